@@ -164,7 +164,7 @@ class Tick:
             if found:
                 names = ", ".join(sensor.title for sensor in found)
                 self._handler.stop(ActiveStop(StopReason.SENSOR_BROKEN, names))
-                self._handler.stopped_at_tick = tick
+                self._handler.stops.newest_tick = tick
         if not watch.places:
             return readings
         return readings._replace(infrared_counts=substitute(readings.infrared_counts, watch.places))
@@ -222,7 +222,7 @@ class Tick:
         self._timer.lap(_GUARD)
         self._turned = result.wheel_speeds != STANDSTILL
         if result.latched and not self._latched:
-            handler.stopped_at_tick = tick
+            handler.stops.newest_tick = tick
         self._latched = result.latched
         self._driving = decision.driving and not result.latched
         asks = self._options.asks_at_bumper and self._bumpers.update(decision, result) and handler.teacher_available

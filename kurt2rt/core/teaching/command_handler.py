@@ -47,9 +47,11 @@ from kurt2rt.core.teaching.commands import (
 from kurt2rt.core.teaching.control_commands import BehaviourSelection, ControlCommands, SessionClock
 from kurt2rt.core.teaching.demonstration import Demonstration
 from kurt2rt.core.teaching.goal_commands import GoalCommands
-from kurt2rt.core.teaching.handler_parts import HandlerParts, knowledge_updater_for, lesson_builder_for
+from kurt2rt.core.teaching.handler_parts import HandlerParts
 from kurt2rt.core.teaching.hold_lessons import HoldLessons
+from kurt2rt.core.teaching.knowledge_updater import KnowledgeUpdater
 from kurt2rt.core.teaching.late_press import LatePresses, TeacherDelay
+from kurt2rt.core.teaching.lesson_builder import LessonBuilder
 from kurt2rt.core.teaching.lesson_result import LessonResult
 from kurt2rt.core.teaching.message_fields import SLOWEST_PERCENT
 from kurt2rt.core.teaching.rewind_history import CHUNK_TICKS, RewindHistory
@@ -98,7 +100,7 @@ class CommandHandler:
         self._goals = parts.goals
         self.recent = DecisionHistory(level.system.dimensions) if reinforcement is None else reinforcement.recent
         self._rewind = RewindHistory(self.recent)
-        self._lessons = lesson_builder_for(level, self.recent, self._rewind, insert_radius_fraction, parts)
+        self._lessons = LessonBuilder(level, self.recent, self._rewind, insert_radius_fraction, parts)
         self.delay = parts.delay or TeacherDelay()
         self.holds = HoldLessons(self._lessons, level.system, self.recent, self.delay)
         self.demonstration = Demonstration(self._lessons, level.system, authority.repertoire, self.recent)
@@ -106,7 +108,7 @@ class CommandHandler:
         self.streams = StreamHandler(level.repertoire, authority, self.stops, self.holds, self.delay)
         self._control = ControlCommands(level.repertoire, authority, self.stops, self.streams)
         self._late = LatePresses(self.recent, self.delay)
-        self.updater = knowledge_updater_for(level, handled_command_ids, parts)
+        self.updater = KnowledgeUpdater(level, handled_command_ids, parts)
         self.phase = Phase.SUPERVISED
         self.lesson_speed = LessonSpeed(parts.lesson_speed)
         self._selection = BehaviourSelection(self.active_behaviour, parts.mid)
@@ -120,15 +122,6 @@ class CommandHandler:
     @active_stop.setter
     def active_stop(self, stop: ActiveStop | None) -> None:
         self.stops.active = stop
-
-    @property
-    def stopped_at_tick(self) -> int:
-        """Tick of the last stop by a teacher or the guard. It can be set."""
-        return self.stops.newest_tick
-
-    @stopped_at_tick.setter
-    def stopped_at_tick(self, tick: int) -> None:
-        self.stops.newest_tick = tick
 
     def was_handled(self, command_id: str) -> bool:
         """Return whether a command of this id was carried out already."""

@@ -3,16 +3,13 @@
 from collections.abc import Iterable
 
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.critic import CriticState, Opinion
 from kurt2rt.core.decision.decision import Decision
-from kurt2rt.core.learner.learner_level import LearnerLevel
 from kurt2rt.core.outcome_text import event_error_text
-from kurt2rt.core.reinforcement.reinforcement import Reinforcement
-from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.teaching.handler_parts import HandlerParts
 
 _REWARDED_PHASES = (Phase.REINFORCEMENT, Phase.CRITIC)
 
@@ -20,25 +17,16 @@ _REWARDED_PHASES = (Phase.REINFORCEMENT, Phase.CRITIC)
 class KnowledgeUpdater:
     """Only place where the knowledge of a running robot changes; it notifies the parts that depend on it."""
 
-    def __init__(
-        self,
-        level: BasicLevel,
-        *,
-        handled_command_ids: Iterable[str],
-        reinforcement: Reinforcement | None,
-        agreement: Agreement | None,
-        self_teaching: SelfTeaching | None,
-        learner: LearnerLevel | None = None,
-    ) -> None:
-        """Connect the parts: `reinforcement` applies rewards, `self_teaching` is the teacher of phase 5.
-
-        `learner` undoes lessons of a learner; None: RLAs decide.
-        """
+    def __init__(self, level: BasicLevel, handled_command_ids: Iterable[str], parts: HandlerParts) -> None:
+        """Connect the parts; `handled_command_ids`: of earlier runs."""
         self._level = level
-        self._reinforcement = reinforcement
-        self._agreement = agreement
-        self._self_teaching = self_teaching
-        self._learner = learner
+        self._reinforcement = parts.reinforcement
+        self._self_teaching = parts.self_teaching
+        self._followers = [
+            each
+            for each in (parts.reinforcement, parts.agreement, parts.self_teaching, parts.learner)
+            if each is not None
+        ]
         self.handled_ids = set(handled_command_ids)
         """Ids of all commands that were carried out, and of all repairs."""
         self.error = ""
@@ -59,14 +47,8 @@ class KnowledgeUpdater:
         """Apply an event and notify the dependent parts. Raises InvalidEventError without having changed anything."""
         self._level.apply(event)
         self.handled_ids.add(event.origin.command_id)
-        if self._reinforcement is not None:
-            self._reinforcement.on_event(event)
-        if self._agreement is not None:
-            self._agreement.on_event(event)
-        if self._self_teaching is not None:
-            self._self_teaching.on_event(event)
-        if self._learner is not None:
-            self._learner.on_event(event)
+        for follower in self._followers:
+            follower.on_event(event)
 
     def learn_from_tick(
         self, phase: Phase, tick: int, decision: Decision, opinion: Opinion | None

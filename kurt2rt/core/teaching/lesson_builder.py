@@ -7,17 +7,16 @@ from numpy.typing import NDArray
 
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.learner.learner import Why
-from kurt2rt.core.learner.learner_level import LearnerLevel
 from kurt2rt.core.outcome import CommandRefusedError, RefusalCode, ResultCode, refuse
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
-from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.events import ActionReplaced, RlaCreated, RlaDeleted, TeachingEvent
 from kurt2rt.core.rla.lesson_history import hold_of
 from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
 from kurt2rt.core.teaching.commands import Appraise, Correct, DeleteRla, ReplaceAction, Reward, Teach, Undo
-from kurt2rt.core.teaching.feedback_lessons import AppraisalLessons, FeedbackLessons
+from kurt2rt.core.teaching.feedback_lessons import FeedbackLessons
+from kurt2rt.core.teaching.handler_parts import HandlerParts
 from kurt2rt.core.teaching.lesson_result import (
     LessonContext,
     LessonResult,
@@ -26,7 +25,6 @@ from kurt2rt.core.teaching.lesson_result import (
     require_rla,
     rla_outcome,
 )
-from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.rewind_history import RewindHistory
 from kurt2rt.core.teaching.undo_lessons import UndoLessons
 
@@ -42,13 +40,8 @@ class LessonBuilder:
         level: BasicLevel,
         recent: DecisionHistory,
         rewind: RewindHistory,
-        *,
         insert_radius_fraction: float,
-        reinforcement: Reinforcement | None,
-        appraisal_lessons: AppraisalLessons | None,
-        mid: MidLessons | None = None,
-        answers_override_holds: bool = False,
-        learner: LearnerLevel | None = None,
+        parts: HandlerParts,
     ) -> None:
         """Connect the level and its optional parts.
 
@@ -57,24 +50,20 @@ class LessonBuilder:
             recent: decisions that rewards and appraisals can be about.
             rewind: decisions that answers and corrections can be about.
             insert_radius_fraction: a correction farther than this share of R from the nearest condition inserts an RLA.
-            reinforcement: shares rewards out; without it they are only counted.
-            appraisal_lessons: lessons of the critic; None without a critic.
-            mid: lessons of the mid level; None without one.
-            answers_override_holds: keep what an answer or a press taught where a hold would replace it.
-            learner: gets each lesson of the basic level, also those that change no RLA; None: RLAs decide.
+            parts: of the command handler.
         """
         self._level = level
         self._system = level.system
         self._recent = recent
         self._rewind = rewind
         self._insert_radius_fraction = insert_radius_fraction
-        self._reinforcement = reinforcement
-        self._appraisals: tuple[str, ...] = () if appraisal_lessons is None else appraisal_lessons.appraisals
-        self._mid = mid
-        self._answers_override_holds = answers_override_holds
-        self._learner = learner
-        self._feedback = FeedbackLessons(level.system, recent, reinforcement, appraisal_lessons)
-        self._undos = UndoLessons(level, appraisal_lessons, mid, learner)
+        self._reinforcement = parts.reinforcement
+        self._appraisals = () if parts.critic is None else parts.critic.appraisals
+        self._mid = parts.mid
+        self._answers_override_holds = parts.answers_override_holds
+        self._learner = parts.learner
+        self._feedback = FeedbackLessons(level.system, recent, parts)
+        self._undos = UndoLessons(level, parts)
         self.corrections_at: Counter[str] = Counter()
         """Number of corrections by level."""
 

@@ -3,32 +3,23 @@
 from dataclasses import replace
 
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.learner.learner_level import LearnerLevel
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.rla.events import LessonUndone
 from kurt2rt.core.rla.lesson_history import DERIVED, hold_of
 from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
-from kurt2rt.core.teaching.feedback_lessons import AppraisalLessons
+from kurt2rt.core.teaching.handler_parts import HandlerParts
 from kurt2rt.core.teaching.lesson_result import LessonResult, rla_outcome
-from kurt2rt.core.teaching.mid_lessons import MidLessons
 
 
 class UndoLessons:
     """Builder of the events that undo lessons; it applies none."""
 
-    def __init__(
-        self,
-        level: BasicLevel,
-        appraisal_lessons: AppraisalLessons | None,
-        mid: MidLessons | None,
-        learner: LearnerLevel | None,
-    ) -> None:
-        """Connect the level and the optional parts of a `LessonBuilder`."""
+    def __init__(self, level: BasicLevel, parts: HandlerParts) -> None:
         self._level = level
         self._system = level.system
-        self._appraisals = None if appraisal_lessons is None else appraisal_lessons.appraisals
-        self._mid = mid
-        self._learner = learner
+        self._appraisals = None if parts.critic is None else parts.critic.appraisals
+        self._mid = parts.mid
+        self._learner = parts.learner
 
     def build(self, named: str | None, origin: Origin) -> LessonResult:
         """Return the outcome and events that undo a lesson, or all of a hold, by its id.
