@@ -66,12 +66,3 @@ def test_speeds_stay_between_zero_and_twice_the_set_speed(infrared_counts: tuple
     speeds = along(side).step(sensed(infrared_counts))
     assert all(math.isfinite(speed) and -1e-12 <= speed <= 0.6 + 1e-12 for speed in speeds)
     assert sum(speeds) == pytest.approx(2 * 0.30)
-
-
-@pytest.mark.parametrize(
-    ("front", "back"),
-    [("s1", "s1"), ("s2", "s1"), ("s1", "s6"), ("s9", "s12"), ("s9", "s10")],
-)
-def test_sensors_of_different_sides_are_refused(front: str, back: str) -> None:
-    with pytest.raises(ValueError, match=f"{front} and {back}"):
-        along("left", front=front, back=back)

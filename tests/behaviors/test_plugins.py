@@ -76,11 +76,6 @@ def test_task_with_an_unusable_policy_names_key_and_reason(
         load_task(str(path))
 
 
-def test_package_that_takes_a_shipped_name_changes_no_task(plugin_folder: Path) -> None:
-    install(plugin_folder, "parts", {"policies": {"wall_following": "no_such_module:Other"}})
-    assert type(load_task("wall_following").policy).__module__ == "behaviors.policies.wall_following"
-
-
 def test_task_of_a_recording_does_without_its_plugins(plugin_folder: Path) -> None:
     policy = {"kind": "parts_c:Turning", "front_m": 0.2}
     write_parts(plugin_folder, "parts_c")

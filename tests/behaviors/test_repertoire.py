@@ -7,18 +7,9 @@ import pytest
 from behaviors.repertoire import load_repertoire
 from config import CONFIG_DIR
 from config.settings import SettingsError
-from hal.robot import WheelSpeeds
-from tests.behaviors.helpers import ROBOT, counts, sensed
+from tests.behaviors.helpers import ROBOT
 
 BASIC = (CONFIG_DIR / "repertoires" / "basic.yaml").read_text()
-
-
-def test_motor_primitive_ignores_the_readings() -> None:
-    curve = load_repertoire("basic", ROBOT)["curve_left"]
-    for infrared_counts in (counts(), counts(s9=0.1), (0,) * 18, (1023,) * 18):
-        curve.start()
-        for _ in range(3):
-            assert curve.step(sensed(infrared_counts, left_ticks=500)) == WheelSpeeds(0.12, 0.32)
 
 
 @pytest.mark.parametrize(

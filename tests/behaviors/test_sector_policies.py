@@ -31,31 +31,6 @@ def seen(infrared: InfraredSettings, **distances_m: float) -> tuple[int, ...]:
     return tuple(counts)
 
 
-@pytest.mark.parametrize(
-    ("from_deg", "to_deg", "inside", "outside"),
-    [
-        (-25, 25, (-25, 0, 25), (26, -26, 180)),
-        (135, -135, (135, 180, -180, -135), (134, 0, -134)),
-        (90, 90, (90,), (89,)),
-    ],
-)
-def test_sector_covers_headings_also_behind(
-    from_deg: float, to_deg: float, inside: tuple[float, ...], outside: tuple[float, ...]
-) -> None:
-    covers = Sector(from_deg=from_deg, to_deg=to_deg).covers
-    assert all(map(covers, inside))
-    assert not any(map(covers, outside))
-
-
-def test_sector_nearest_is_the_nearest_of_its_sensors() -> None:
-    nearest_m = sector(AHEAD).nearest(SCHOOL)
-    counts = [0] * 7
-    counts[1], counts[2] = round(SCHOOL.counts_at(0.1)), round(SCHOOL.counts_at(0.06))
-    counts[0] = 900  # looks 40 degrees to the left
-    assert nearest_m(tuple(counts)) == pytest.approx(0.06, abs=0.001)
-    assert nearest_m((0,) * 7) == SCHOOL.far_m
-
-
 def test_sector_without_a_sensor_names_the_headings() -> None:
     with pytest.raises(SettingsError, match=r"from 60 to 120 degrees.*-40, -20, 0, 20, 40, 180"):
         Sector(from_deg=60, to_deg=120).nearest(SCHOOL)

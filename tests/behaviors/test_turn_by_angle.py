@@ -36,26 +36,7 @@ def test_turn_reaches_the_angle_and_stands(angle_deg: float) -> None:
     assert last == STANDSTILL
 
 
-def test_turn_is_finished_once_it_stands() -> None:
-    behaviour = turn(90.0)
-    turned_deg = drive(behaviour, 1)[0]
-    while not behaviour.finished:
-        turned_deg += drive(behaviour, 1, WheelSpeeds(-0.20, 0.20))[0]
-    assert turned_deg == pytest.approx(90.0, abs=0.6)
-    assert behaviour.step(sensed()) == STANDSTILL
-    behaviour.start()
-    assert not behaviour.finished
-
-
 def test_turn_ignores_straight_motion() -> None:
     behaviour = turn(90.0)
     for _ in range(1000):
         assert behaviour.step(sensed(left_ticks=300, right_ticks=300)) == WheelSpeeds(-0.20, 0.20)
-
-
-def test_turn_swing_the_other_way_lengthens_it() -> None:
-    behaviour = turn(90.0)
-    for _ in range(20):  # wheels that still turn right from the action before
-        assert behaviour.step(sensed(left_ticks=100, right_ticks=-100)) == WheelSpeeds(-0.20, 0.20)
-    swung_deg = math.degrees(20 * 200 * METRES_PER_TICK / TRACK_M)
-    assert drive(behaviour, 2000)[0] == pytest.approx(90.0 + swung_deg, abs=0.6)

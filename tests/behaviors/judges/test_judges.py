@@ -71,18 +71,6 @@ def test_judges_always_punish_common_faults(task: str, circumstances: AppraisalF
         assert JUDGES[task].judge(circumstances._replace(**trouble)) == -1
 
 
-@pytest.mark.parametrize("task", TASKS)
-def test_judges_allow_no_progress_while_turning(task: str) -> None:
-    on_its_way = {"left_m": 0.2, "ahead_left_m": 0.4, "speed_m_s": 0.22, "turn_rad_s": 0.5}
-    assert thinks(task, **on_its_way, no_progress=1.0) == thinks(task, **on_its_way)
-
-
-@pytest.mark.parametrize("task", TASKS)
-@pytest.mark.parametrize("of_it", [{"front_m": 0.12}, {"front_m": 0.12, "left_m": 0.2, "ahead_left_m": 0.15}])
-def test_judges_punish_driving_at_obstacles(task: str, of_it: dict[str, float]) -> None:
-    assert thinks(task, **of_it, speed_m_s=0.3) == -1
-
-
 # Wall following
 
 ALONG = {"left_m": 0.2, "ahead_left_m": 0.3}

@@ -6,7 +6,6 @@ from behaviors.metrics.junctions import QUARTERS
 from behaviors.metrics.route import FixedRoute, RouteSettings
 from behaviors.metrics.routes import Leg, Route
 from behaviors.metrics.streets import StreetMap
-from behaviors.metrics.task_metric import RouteMetric
 from config.settings import SettingsError
 from tests.behaviors.metrics.paths import Point, follow
 from tests.behaviors.metrics.worlds import course_in
@@ -47,29 +46,6 @@ def drive(metric: FixedRoute, legs: int) -> None:
         follow(metric, [middle(leg), corner(leg), middle(following)])
 
 
-def wrong_way(leg: Leg) -> Point:
-    """Return the middle of a street that leads out of a leg's junction and is not on the route."""
-    junction = leg.junction
-    side = next(each for each in sorted(junction.arms) if each not in (leg.leaves, leg.way.turned(2)))
-    along = {0: (0.9, 0.0), 1: (0.0, 0.9), 2: (-0.9, 0.0), 3: (0.0, -0.9)}[side]
-    return junction.x_m + along[0], junction.y_m + along[1]
-
-
-def with_a_choice(metric: FixedRoute) -> None:
-    """Drive on to where another way than the route's is possible."""
-    while len(metric.route.legs[metric.ahead.passed % 8].junction.arms) < 3:
-        drive(metric, 1)
-
-
-def test_route_begins_in_the_middle_of_the_first_street() -> None:
-    metric = set_down()
-    assert isinstance(metric, RouteMetric)
-    assert metric.reset_pose == metric.route.legs[0].middle
-    assert MEANING[metric.behaviour] == metric.route.quarters[0]
-    passed, inside, here, after = metric.ahead
-    assert (passed, inside, here, MEANING[after]) == (0, False, metric.behaviour, metric.route.quarters[1])
-
-
 def test_route_without_errors_counts_every_decision_right() -> None:
     metric = set_down()
     asked = []
@@ -82,22 +58,6 @@ def test_route_without_errors_counts_every_decision_right() -> None:
     assert metric.findings["junctions, turn_left"] == metric.findings["junctions right, turn_left"] == lefts
     assert metric.ahead.passed == 16
     assert not metric.needs_reset
-
-
-def test_route_wrong_way_counts_and_resets_to_the_right_street() -> None:
-    metric = set_down()
-    with_a_choice(metric)
-    place = metric.ahead.passed
-    leg = metric.route.legs[place]
-    follow(metric, [middle(leg), corner(leg), wrong_way(leg)])
-    assert metric.needs_reset
-    assert metric.passages[-1].taken != leg.quarters
-    assert metric.reset_pose == metric.route.legs[(place + 1) % 8].middle
-    metric.reset(metric.reset_pose)
-    assert not metric.needs_reset
-    drive(metric, 3)
-    assert metric.findings["junctions"] - metric.findings["junctions right"] == 1.0
-    assert metric.progress == place + 3.0
 
 
 def test_route_turning_back_counts_as_wrong_and_repeats() -> None:

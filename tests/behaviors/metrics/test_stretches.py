@@ -9,7 +9,7 @@ from behaviors.metrics.rounds import Rounds, RoundsSettings
 from behaviors.metrics.task_metric import StretchMetric
 from behaviors.metrics.way import Way
 from simbridge.contracts.simulation import Pose, SimulatedPost
-from tests.behaviors.metrics.paths import Point, along, arc, follow_in_stretches, noisy_poses
+from tests.behaviors.metrics.paths import Point, follow_in_stretches, noisy_poses
 
 WEST, EAST = (1.8, 1.8), (3.1, 1.8)
 
@@ -46,9 +46,3 @@ def test_metric_of_stretches_has_the_bits_of_single_ticks(build: Callable[[], St
         expected = measured(build(), poses, 0)
         assert expected[0] != 0.0 or build is eights
         assert [measured(build(), poses, ticks) for ticks in (1, 7, 500)] == [expected] * 3
-
-
-def test_eights_in_stretches_count_whole_ones() -> None:
-    points = [*arc(WEST, 0.65, 0.0, 360.0), *arc(EAST, 0.65, 180.0, -180.0)] * 2 + [(2.4, 1.9)]
-    poses = list(along(points))
-    assert measured(eights(), poses, 500)[0] == measured(eights(), poses, 0)[0] == 2.0

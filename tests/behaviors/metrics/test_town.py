@@ -1,7 +1,6 @@
 """Streets as one goes through them, and the shortest ways among them."""
 
 import math
-from itertools import pairwise
 
 import pytest
 
@@ -28,25 +27,6 @@ def street(town: Town, x_m: float, y_m: float, way: Side) -> Street:
     found = town.street_at(Pose(x_m, y_m, way.heading_rad))
     assert found is not None
     return found
-
-
-def test_on_from_depends_on_the_end_of_the_street(town: Town) -> None:
-    inner = town.on_from(street(town, 1.3, 2.2, Side.EAST))
-    assert set(inner) == set(BEHAVIOURS)
-    assert inner["turn_left"].way is Side.NORTH
-    corner = town.on_from(street(town, 0.4, 4.9, Side.NORTH))
-    assert set(corner) == {"turn_right"}
-    assert corner["turn_right"] == street(town, 1.3, 5.8, Side.EAST)
-
-
-def test_the_shortest_way_never_turns_back(town: Town) -> None:
-    start, behind = street(town, 3.1, 2.2, Side.EAST), street(town, 1.3, 2.2, Side.EAST)
-    way = town.shortest(start, behind)
-    assert way is not None
-    assert (way[0], way[-1]) == (start, behind)
-    assert all(there in town.on_from(here).values() for here, there in pairwise(way))
-    assert length_m(way) == pytest.approx(1.8 * (len(way) - 1))
-    assert len(way) == 6
 
 
 def test_ways_are_measured_from_where_one_is_to_where_one_comes(town: Town) -> None:
