@@ -29,13 +29,12 @@ from kurt2rt.checks.commission.checklist import (
     steps_to_run,
 )
 from kurt2rt.checks.commission.console_operator import ConsoleOperator
-from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.listener import Listener
 from kurt2rt.checks.commission.operator import AbortedError
-from kurt2rt.checks.commission.progress import Progress, load_progress
+from kurt2rt.checks.commission.progress import Findings, Progress, StepOutcome, load_progress
 from kurt2rt.checks.commission.report import as_text, print_report
 from kurt2rt.checks.commission.robot_file import write_robot_file
-from kurt2rt.checks.commission.step import CommissionStep, StepOutcome
+from kurt2rt.checks.commission.step import CommissionStep
 from kurt2rt.checks.commission.test_stand import TestStand
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import RobotName

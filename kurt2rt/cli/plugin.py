@@ -5,8 +5,7 @@ from typing import Annotated
 
 import typer
 
-from kurt2rt.checks.plugins.kinds import KINDS, KindName, list_parts
-from kurt2rt.checks.plugins.part_text import TextKind, text_of_part
+from kurt2rt.checks.plugins.kinds import KINDS, KindName, TextKind, list_parts, text_of_part
 from kurt2rt.checks.plugins.skeleton import SkeletonKind, write_skeleton
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.tables import console_of

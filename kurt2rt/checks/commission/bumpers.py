@@ -4,9 +4,9 @@ from functools import reduce
 from operator import and_, or_
 
 from kurt2rt.checks.commission.fault import FaultCode
-from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.frame_statistics import FrameStatistics
+from kurt2rt.checks.commission.listener import FrameStatistics
 from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
+from kurt2rt.checks.commission.progress import Findings
 from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import TestStand
 

@@ -9,14 +9,13 @@ from config.settings import SettingsError
 from hal.identity import hardware
 from kurt2rt.checks.commission.bumpers import BumpersStep
 from kurt2rt.checks.commission.fault import SkipCode, SkippedError
-from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.identity import IdentityStep
 from kurt2rt.checks.commission.ir_calibration_step import IrCalibrationStep
 from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
-from kurt2rt.checks.commission.progress import Progress, StepRecord
+from kurt2rt.checks.commission.progress import Findings, Progress, StepOutcome, StepRecord
 from kurt2rt.checks.commission.sensors import SensorsStep
 from kurt2rt.checks.commission.speed_modes import SpeedModesStep
-from kurt2rt.checks.commission.step import CommissionStep, StepOutcome, StepResult
+from kurt2rt.checks.commission.step import CommissionStep, StepResult
 from kurt2rt.checks.commission.stopping import StoppingStep
 from kurt2rt.checks.commission.test_stand import TestStand
 from kurt2rt.checks.commission.wheels import WheelsStep

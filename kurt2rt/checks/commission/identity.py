@@ -4,8 +4,8 @@ from hal.bus import CONTROL_ID
 from hal.codec import load_codec
 from hal.identity import hardware
 from kurt2rt.checks.commission.fault import FaultCode
-from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.frame_statistics import FrameStatistics
+from kurt2rt.checks.commission.listener import FrameStatistics
+from kurt2rt.checks.commission.progress import Findings
 from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import TestStand
 

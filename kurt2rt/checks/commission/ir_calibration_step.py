@@ -4,9 +4,9 @@ import statistics
 
 from hal.kurt2_settings import Kurt2SensorSettings
 from kurt2rt.checks.commission.fault import FaultCode, SkipCode, SkippedError
-from kurt2rt.checks.commission.findings import Findings, LawFound
 from kurt2rt.checks.commission.ir_calibration import IrCalibrationError, IrFit, IrLaw, IrReading, fit_law
 from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
+from kurt2rt.checks.commission.progress import Findings, LawFound
 from kurt2rt.checks.commission.sensors import SETTLE_S
 from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import TestStand

@@ -1,16 +1,53 @@
-"""Progress of a commissioning in a file, so that it can take several sessions."""
+"""Findings and progress of a commissioning, in a file, so that it can take several sessions."""
 
 from collections.abc import Mapping
+from enum import StrEnum
 from pathlib import Path
-from typing import Self
+from typing import Annotated, Self
 
 from pydantic import Field, ValidationError
 
 from config.settings import Settings, SettingsError
+from hal.kurt2_settings import SpeedMode
 from kurt2rt.checks.commission.fault import SkipCode, StepFault
-from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.step import StepOutcome
 from kurt2rt.platform.durable_files import write_durably
+
+
+class LawFound(Settings):
+    """Infra-red calibration fitted to readings at known distances."""
+
+    numerator_counts_m: float
+    offset_m: float
+    bias_counts: float
+    near_m: float
+    far_m: float
+    floor_counts: int
+    plateau_counts: int
+
+
+class Findings(Settings):
+    """Measured values; None or absent: not measured, the base settings hold."""
+
+    hardware_id: int | None = None
+    firmware: int | None = None
+    speed_mode: SpeedMode | None = None
+    full_speed_m_s: float | None = None
+    """Speed at 100 % in SPEED mode, if that mode answered."""
+    controller_watchdog_s: Annotated[float, Field(gt=0)] | None = None
+    channels: Mapping[str, str] = Field(default={})
+    """Analog channel by sensor name."""
+    dead_sensors: tuple[str, ...] = ()
+    bumper_bits: Mapping[str, int] = Field(default={})
+    """Bit by bumper name."""
+    law: LawFound | None = None
+
+
+class StepOutcome(StrEnum):
+    """Outcome of one step of the checklist."""
+
+    PASSED = "passed"
+    FAILED = "failed"
+    SKIPPED = "skipped"
 
 
 class StepRecord(Settings):

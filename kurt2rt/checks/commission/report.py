@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from rich.console import Console
 from rich.text import Text
 
-from kurt2rt.checks.commission.progress import Progress
-from kurt2rt.checks.commission.step import CommissionStep, StepOutcome
+from kurt2rt.checks.commission.progress import Progress, StepOutcome
+from kurt2rt.checks.commission.step import CommissionStep
 from kurt2rt.platform.text_table import TextTable, print_whole
 
 _STYLES = {StepOutcome.PASSED: "green", StepOutcome.FAILED: "bold red", StepOutcome.SKIPPED: "yellow"}

@@ -2,7 +2,8 @@
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,7 @@ from pydantic import ValidationError
 from config.settings import SettingsError
 from hal.kurt2_settings import Kurt2Settings, SpeedMode, load_kurt2
 from hal.robot_settings import BumperSettings
-from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.progress import Progress
+from kurt2rt.checks.commission.progress import Findings, Progress
 from kurt2rt.checks.commission.report import passed
 from kurt2rt.checks.commission.step import CommissionStep
 from kurt2rt.platform.durable_files import write_durably
@@ -144,51 +144,48 @@ def _comments(base: Kurt2Settings, progress: Progress) -> dict[str, str]:
     return comments
 
 
+class _Row(dict[str, Any]):
+    """Mapping on a line of its own."""
+
+
+class _Dumper(yaml.SafeDumper):
+    """Writer of YAML with floats without an exponent."""
+
+
+_Dumper.add_representer(float, lambda dumper, value: _positional(dumper, value))
+_Dumper.add_representer(
+    _Row, lambda dumper, row: dumper.represent_mapping("tag:yaml.org,2002:map", row, flow_style=True)
+)
+
+
+def _positional(dumper: _Dumper, value: float) -> yaml.ScalarNode:
+    return dumper.represent_scalar("tag:yaml.org,2002:float", np.format_float_positional(value, trim="0"))
+
+
 def _render(content: Mapping[str, Any], comments: Mapping[str, str]) -> str:
-    lines: list[str] = []
-    for key, value in content.items():
-        if isinstance(value, dict):
-            lines += ["", f"{key}:", *_rows(value, key, comments)]
-        elif isinstance(value, list):
-            lines += _list(key, value, "", key, comments)
-        else:
-            lines.append(_commented(f"{key}: {_scalar(value)}", comments.get(key)))
-    return "\n".join(lines) + "\n"
+    """Return YAML with a comment in the line of each dotted key."""
+    text = yaml.dump(_in_rows(content), Dumper=_Dumper, sort_keys=False, width=math.inf, allow_unicode=True)
+    lines = text.splitlines()
+    for key, line in _lines_of(yaml.compose(text), ""):
+        if key in comments:
+            lines[line] += f"  # {comments[key]}"
+    return "".join(f"\n{line}\n" if re.fullmatch(r"\w+:", line) else f"{line}\n" for line in lines)
 
 
-def _rows(section: Mapping[str, Any], path: str, comments: Mapping[str, str]) -> list[str]:
-    lines: list[str] = []
-    for key, value in section.items():
-        dotted = f"{path}.{key}"
-        if isinstance(value, list) and value and isinstance(value[0], dict):
-            lines += _list(key, value, "  ", dotted, comments)
-        else:
-            lines.append(_commented(f"  {key}: {_scalar(value)}", comments.get(dotted)))
-    return lines
-
-
-def _list(key: str, values: list[Any], indent: str, path: str, comments: Mapping[str, str]) -> list[str]:
-    if not values:
-        return [f"{indent}{key}: []"]
-    items = [f"{indent}  - {_scalar(each)}" for each in values]
-    return [
-        *([] if indent else [""]),
-        f"{indent}{key}:",
-        *(_commented(item, comments.get(f"{path}.{at}")) for at, item in enumerate(items)),
-    ]
-
-
-def _commented(line: str, comment: str | None) -> str:
-    return line if comment is None else f"{line}  # {comment}"
-
-
-def _scalar(value: Any) -> str:
-    """Return a value on one line; floats without an exponent, which YAML would read as text."""
+def _in_rows(value: Any) -> Any:
+    """Return a content whose lists hold mappings of one line each."""
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{key}: {_scalar(each)}" for key, each in value.items()) + "}"
-    if isinstance(value, list):
-        return "[" + ", ".join(_scalar(each) for each in value) + "]"
-    if isinstance(value, float):
-        return np.format_float_positional(value, trim="0")
-    # As an item of a list, so that YAML quotes what would end an item.
-    return yaml.safe_dump([value], default_flow_style=True, width=math.inf, allow_unicode=True).strip()[1:-1]
+        return {key: _in_rows(each) for key, each in value.items()}
+    return [_Row(each) if isinstance(each, dict) else each for each in value] if isinstance(value, list) else value
+
+
+def _lines_of(node: yaml.Node | None, key: str) -> Iterator[tuple[str, int]]:
+    """Yield each dotted key within a node, with the number of its line from 0."""
+    if isinstance(node, yaml.MappingNode):
+        within = [(name.value, each) for name, each in node.value]
+    else:
+        within = list(enumerate(node.value)) if isinstance(node, yaml.SequenceNode) else []
+    for name, each in within:
+        dotted = f"{key}.{name}" if key else str(name)
+        yield dotted, each.start_mark.line
+        yield from _lines_of(each, dotted)

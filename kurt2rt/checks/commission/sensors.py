@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 from hal.kurt2_settings import Kurt2SensorSettings
 from kurt2rt.checks.commission.fault import FaultCode
-from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
+from kurt2rt.checks.commission.progress import Findings
 from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import TestStand
 

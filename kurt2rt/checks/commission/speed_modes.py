@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from hal.robot import WheelSpeeds
 from kurt2rt.checks.commission.fault import FaultCode, SkippedError, StepFault
-from kurt2rt.checks.commission.findings import Findings
+from kurt2rt.checks.commission.progress import Findings
 from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import RAN_AWAY, TURNS_SHARE, TestDrive, TestStand
 from kurt2rt.checks.commission.wheel_steps import (

@@ -1,21 +1,12 @@
 """Protocol and result of a checklist step."""
 
 from dataclasses import dataclass, field
-from enum import StrEnum
 from typing import Protocol
 
 from kurt2rt.checks.commission.fault import FaultCode, Field, StepFault
-from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.operator import Tone
+from kurt2rt.checks.commission.progress import Findings, StepOutcome
 from kurt2rt.checks.commission.test_stand import TestStand
-
-
-class StepOutcome(StrEnum):
-    """Outcome of one step of the checklist."""
-
-    PASSED = "passed"
-    FAILED = "failed"
-    SKIPPED = "skipped"
 
 
 @dataclass(slots=True)

@@ -12,8 +12,7 @@ from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
-from kurt2rt.checks.commission.frame_statistics import FrameStatistics
-from kurt2rt.checks.commission.listener import Listener
+from kurt2rt.checks.commission.listener import FrameStatistics, Listener
 from kurt2rt.checks.commission.operator import LEAVE, AbortedError, Operator, OperatorQuestion, Tone
 from kurt2rt.platform.clock import Clock
 

@@ -3,8 +3,8 @@
 from hal.kurt2_settings import Kurt2Settings
 from hal.robot import WheelSpeeds
 from kurt2rt.checks.commission.fault import FaultCode
-from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.operator import AnswerChoice, OperatorQuestion, QuestionKind, Tone
+from kurt2rt.checks.commission.progress import Findings
 from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import TURNS_SHARE, TestDrive, TestStand
 from kurt2rt.checks.commission.wheel_steps import (

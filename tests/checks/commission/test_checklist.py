@@ -10,9 +10,8 @@ from hal.kurt2_settings import SpeedMode
 from kurt2rt.checks.commission.checklist import STEPS, WORDS, blocking_failures, open_steps, step_named
 from kurt2rt.checks.commission.fault import SkipCode
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
-from kurt2rt.checks.commission.progress import Progress, load_progress
+from kurt2rt.checks.commission.progress import Progress, StepOutcome, load_progress
 from kurt2rt.checks.commission.report import passed
-from kurt2rt.checks.commission.step import StepOutcome
 from kurt2rt.checks.commission.test_stand import MAXIMUM_SPEED_M_S
 from tests.checks.commission.wired_end import Wiring
 from tests.checks.commission.workshop import TODAY, Instead, Session, Workshop, leaves_at

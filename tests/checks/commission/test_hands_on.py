@@ -8,7 +8,7 @@ from hal.kurt2_settings import Kurt2Settings
 from kurt2rt.checks.commission.checklist import blocking_failures
 from kurt2rt.checks.commission.fault import FaultCode, StepFault
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
-from kurt2rt.checks.commission.step import StepOutcome
+from kurt2rt.checks.commission.progress import StepOutcome
 from tests.checks.commission.wired_end import Wiring
 from tests.checks.commission.workshop import BASE, CODEC, Session, Workshop
 

@@ -11,7 +11,7 @@ from hal.codec import load_codec
 from hal.control import Mode, SpeedControl, control_frame
 from kurt2rt.checks.commission.fault import FaultCode, StepFault
 from kurt2rt.checks.commission.operator import OperatorQuestion, QuestionKind
-from kurt2rt.checks.commission.step import StepOutcome
+from kurt2rt.checks.commission.progress import StepOutcome
 from tests.checks.commission.wired_end import Wiring
 from tests.checks.commission.workshop import Session, Workshop
 

@@ -9,7 +9,7 @@ from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.ir_calibration import IrCalibrationError, IrLaw, IrReading, fit_law
 from kurt2rt.checks.commission.ir_calibration_step import DISTANCES_M
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind
-from kurt2rt.checks.commission.step import StepOutcome
+from kurt2rt.checks.commission.progress import StepOutcome
 from tests.checks.commission.workshop import Session, Workshop
 
 USUAL = IrLaw(86.016, 0.04, 64.4)

@@ -12,10 +12,8 @@ from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2Settings, SpeedMode, load_kurt2
 from hal.robot import WheelSpeeds
 from kurt2rt.checks.commission.checklist import STEPS
-from kurt2rt.checks.commission.findings import Findings, LawFound
-from kurt2rt.checks.commission.progress import Progress, StepRecord
+from kurt2rt.checks.commission.progress import Findings, LawFound, Progress, StepOutcome, StepRecord
 from kurt2rt.checks.commission.robot_file import commissioned_settings, robot_file, write_robot_file
-from kurt2rt.checks.commission.step import StepOutcome
 from tests.checks.commission.wired_end import Wiring
 from tests.checks.commission.workshop import BASE, TODAY, Session, Workshop, with_channels
 
@@ -78,9 +76,9 @@ def test_robot_file_marks_measured_and_untried_values() -> None:
         "  controller_watchdog_s: 0.12  # measured, 2026-11-21, anna",
         "  metres_per_tick: 0.00001727",
         "  numerator_counts_m: 90.5  # fitted, 2026-11-21, anna",
-        "    - {name: s1, label: left front, x_m: 0.14, y_m: 0.165, heading_deg: 90.0, channel: ADC08}"
+        "  - {name: s1, label: left front, x_m: 0.14, y_m: 0.165, heading_deg: 90.0, channel: ADC08}"
         "  # by hand, was ADC07, 2026-11-21, anna",
-        "  - {name: front centre, end: front}  # bit 0 by hand, 2026-11-21, anna",
+        "- {name: front centre, end: front}  # bit 0 by hand, 2026-11-21, anna",
     ):
         assert line in text.splitlines()
     assert re.search(r" s9,.*# DEAD.*, 2026-11-21, anna", text)

@@ -11,7 +11,7 @@ from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from kurt2rt.checks.commission.checklist import blocking_failures
 from kurt2rt.checks.commission.fault import FaultCode, SkipCode, StepFault
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
-from kurt2rt.checks.commission.step import StepOutcome
+from kurt2rt.checks.commission.progress import StepOutcome
 from kurt2rt.checks.commission.stopping import SILENT_S
 from kurt2rt.checks.commission.test_stand import RAN_AWAY, UNANSWERED
 from kurt2rt.checks.commission.wheel_steps import DRIVE_S

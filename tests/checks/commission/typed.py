@@ -10,9 +10,7 @@ import pytest
 from hal.identity import SIMULATED_HARDWARE_ID
 from hal.kurt2_settings import SpeedMode, load_kurt2
 from kurt2rt.checks.commission.checklist import STEPS, step_named
-from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.progress import Progress, StepRecord, load_progress
-from kurt2rt.checks.commission.step import StepOutcome
+from kurt2rt.checks.commission.progress import Findings, Progress, StepOutcome, StepRecord, load_progress
 from kurt2rt.cli.main import main
 from simbridge.realtime import RealtimeSimulation
 from tests.checks.commission.workshop import TODAY, Workshop

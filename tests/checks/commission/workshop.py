@@ -16,8 +16,8 @@ from kurt2rt.checks.commission.checklist import STEPS, WORDS, Checklist, step_na
 from kurt2rt.checks.commission.fault import SkipCode, StepFault
 from kurt2rt.checks.commission.listener import Listener
 from kurt2rt.checks.commission.operator import LEAVE, SKIP, AbortedError, OperatorQuestion, QuestionKind, Tone
-from kurt2rt.checks.commission.progress import Progress
-from kurt2rt.checks.commission.step import CommissionStep, StepOutcome
+from kurt2rt.checks.commission.progress import Progress, StepOutcome
+from kurt2rt.checks.commission.step import CommissionStep
 from kurt2rt.checks.commission.test_stand import TestStand
 from kurt2rt.platform.clock import LockstepClock
 from simbridge.simulated_kurt2 import SimulatedKurt2
