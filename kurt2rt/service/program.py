@@ -33,13 +33,12 @@ from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.live_exam import LiveExam
 from kurt2rt.service.open_robot import OpenedRobot
 from kurt2rt.service.post_tick import ProgramConsole, ProgramStatus
-from kurt2rt.service.process_context import ProcessContext
 from kurt2rt.service.program_screen import ProgramScreen
 from kurt2rt.service.program_startup import ProgramStartup
 from kurt2rt.service.run_options import ProgramEnvironment, RunOptions
 from kurt2rt.service.serve import ChannelOptions, ServeOptions, serve
 from kurt2rt.service.settings import ServiceSettings, with_unit_priority
-from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage
+from kurt2rt.service.shutdown import ProcessContext, ShutdownHandler, ShutdownStage
 from kurt2rt.service.status_line import status_line
 from kurt2rt.service.systemd.notifier import Notifier
 

@@ -17,8 +17,8 @@ from kurt2rt.knowledge.journal.loading import OpenedKnowledge, open_for_teaching
 from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.health.status_socket import serve_waiting, status_socket_path
 from kurt2rt.service.open_robot import OpenedRobot
-from kurt2rt.service.process_context import ProcessContext
 from kurt2rt.service.run_options import ProgramEnvironment, RunOptions
+from kurt2rt.service.shutdown import ProcessContext
 from kurt2rt.service.startup import Dependency, DependencyName, StartupGate, missing_text, require_folder
 
 

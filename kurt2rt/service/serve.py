@@ -37,9 +37,8 @@ from kurt2rt.service.health.status_socket import StatusSocket, status_socket_pat
 from kurt2rt.service.live_exam import LiveExam
 from kurt2rt.service.live_measure import LiveMeasure
 from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus, TickCallback
-from kurt2rt.service.process_context import ProcessContext
 from kurt2rt.service.settings import ServiceSettings
-from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage
+from kurt2rt.service.shutdown import ProcessContext, ShutdownHandler, ShutdownStage
 from kurt2rt.service.systemd.notifier import Notifier
 from kurt2rt.service.systemd.watchdog import WatchdogNotifier
 from simbridge.contracts.simulation import SimulatedWorld

@@ -7,8 +7,9 @@ import signal
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
 from types import FrameType, TracebackType
@@ -16,6 +17,7 @@ from typing import Final, Self
 
 from config.errors import ExitCode
 from kurt2rt.platform.signal_handlers import SignalHandlers
+from kurt2rt.service.systemd.notifier import Notifier
 
 SHUTDOWN_SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP)
 """Ctrl-\\ and Ctrl-Z, too: a program that is stopped or killed on the spot does not brake."""
@@ -258,3 +260,15 @@ def force_exit(stage: ShutdownStage) -> None:
 
 def _ignore(_number: int, _frame: FrameType | None) -> None:
     """Do nothing: Python needs a handler, and the number reached the thread before this call."""
+
+
+@dataclass(frozen=True, slots=True)
+class ProcessContext:
+    """Parts of the process that the service uses."""
+
+    shutdown: ShutdownHandler
+    notifier: Notifier
+    liveness: Mapping[str, Callable[[], bool]] = field(default_factory=dict)
+    """Checks of what must be alive for the heartbeat, without the loop, by name."""
+    log: Callable[[str], None] = lambda _: None
+    """Gets a line for the log. The loop calls it: it may not wait."""

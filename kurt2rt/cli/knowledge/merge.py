@@ -5,8 +5,7 @@ from typing import Annotated
 
 import typer
 
-from kurt2rt.cli.knowledge.confirm import format_lesson
-from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
+from kurt2rt.cli.knowledge.shared import KnowledgeFile, format_lesson, say
 from kurt2rt.knowledge.versions.merge import merge as append_lessons
 
 

@@ -9,6 +9,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.runs.replay.trial import Report
 
 WIDE = 140
@@ -36,3 +37,9 @@ def replaying() -> Iterator[Report]:
 def say(text: str) -> None:
     """Print a line to standard output, without markup."""
     Console(highlight=False).print(text, markup=False, soft_wrap=True)
+
+
+def format_lesson(record: LessonRecord) -> str:
+    """Return a lesson in a few words, with its command id."""
+    origin = record.event.origin
+    return f"{record.text} (lesson {origin.command_id} by {origin.teacher})"

@@ -1,34 +1,61 @@
-"""`kurt2rt knowledge undo` and `redo`."""
+"""`kurt2rt knowledge undo` and `redo`: a preview and a question before anything is changed."""
 
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from kurt2rt.cli.knowledge.confirm import DryRun, NoPreview, Runs, Yes, confirmed, format_lesson
-from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, say
+from config.errors import ExitCode
+from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, format_lesson, replaying, say
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.knowledge.journal.writer import utc_now
-from kurt2rt.knowledge.versions.undo import apply_plan, plan_redo, plan_undo
+from kurt2rt.knowledge.versions.editing import require_no_robot
+from kurt2rt.knowledge.versions.undo import UndoPlan, apply_plan, plan_redo, plan_undo
+from kurt2rt.runs.replay.trial import format_answer
+from kurt2rt.runs.replay.undo_preview import TrialResult, preview, preview_on_newest
+from kurt2rt.service.settings import load_service
+
+_MOST_STRETCHES = 8
+"""Number of stretches shown of each run, the longest."""
 
 
-def undo(
-    file: KnowledgeFile,
+@dataclass(frozen=True, slots=True)
+class _Options:
+    file: KnowledgeFile
     lesson: Annotated[
         str | None,
-        typer.Option(help="Id of the lesson, hold or merge, as knowledge lessons lists it. Default: the newest."),
-    ] = None,
+        typer.Option(
+            help="Id of the lesson, hold or merge, as lessons and merge show it. Default: the newest, or for redo the "
+            "one undone last."
+        ),
+    ] = None
     teacher: Annotated[
         str | None,
         typer.Option(
             metavar="NAME",
-            help="All lessons of this teacher, newest first; critic: the robot's own critic.",
+            help="All lessons of this teacher, or for redo all that were undone; critic: the robot's own critic.",
         ),
-    ] = None,
-    runs: Runs = None,
-    no_preview: NoPreview = False,
-    dry_run: DryRun = False,
-    yes: Yes = False,
-) -> None:
+    ] = None
+    runs: Annotated[
+        Path | None,
+        typer.Option(
+            help="Replay all runs of this folder, or this one run, to preview. Default: the last ten minutes of the "
+            "newest run in the folder that the settings name."
+        ),
+    ] = None
+    no_preview: Annotated[bool, typer.Option("--no-preview", help="Do it without a replay and without a question.")] = (
+        False
+    )
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only show what it would change.")] = False
+    yes: Annotated[bool, typer.Option("--yes", "-y", help="Do not ask. Without a terminal it never asks.")] = False
+
+
+@takes_options(_Options)
+def undo(options: _Options) -> None:
     """Undo a lesson, a merge, or all of one teacher: what it changed is as before.
 
     It first replays the newest recorded run of this knowledge, and shows the
@@ -39,31 +66,13 @@ def undo(
         kurt2rt knowledge undo var/wall_following.knowledge
         kurt2rt knowledge undo var/wall_following.knowledge --teacher anna-phone --dry-run
     """
-    _require_one_of(lesson, teacher)
-    planned = plan_undo(file, lesson, teacher, teacher=TEACHER)
-    if not confirmed(planned, "undo", "undone", runs, no_preview=no_preview, dry_run=dry_run, yes=yes):
-        return
-    apply_plan(planned, utc_now())
-    for record in planned.lessons:
-        say(f"{file}: undone: {format_lesson(record)}")
-    if teacher is not None:
-        say(f"{file}: {len(planned.lessons)} lessons of {teacher} undone")
+    _require_one_of(options)
+    planned = plan_undo(options.file, options.lesson, options.teacher, teacher=TEACHER)
+    _carry_out(planned, options, "undo", "undone", "undone")
 
 
-def redo(
-    file: KnowledgeFile,
-    lesson: Annotated[
-        str | None,
-        typer.Option(help="Id of the lesson, hold or merge, as lessons and merge show it; else the one undone last."),
-    ] = None,
-    teacher: Annotated[
-        str | None, typer.Option(help="All lessons of this teacher that were undone, the one undone last first.")
-    ] = None,
-    runs: Runs = None,
-    no_preview: NoPreview = False,
-    dry_run: DryRun = False,
-    yes: Yes = False,
-) -> None:
+@takes_options(_Options)
+def redo(options: _Options) -> None:
     """Redo a lesson that was undone, or all of one teacher, if its RLA is as the lesson found it.
 
     It first shows the decisions that differ with the lesson, and asks, as undo.
@@ -73,20 +82,86 @@ def redo(
         kurt2rt knowledge redo var/wall_following.knowledge
         kurt2rt knowledge redo var/wall_following.knowledge --teacher anna-phone
     """
-    _require_one_of(lesson, teacher)
-    planned = plan_redo(file, lesson, teacher, teacher=TEACHER)
-    if not confirmed(planned, "redo", "standing again", runs, no_preview=no_preview, dry_run=dry_run, yes=yes):
+    _require_one_of(options)
+    planned = plan_redo(options.file, options.lesson, options.teacher, teacher=TEACHER)
+    _carry_out(planned, options, "redo", "standing again", "redone")
+
+
+def _require_one_of(options: _Options) -> None:
+    if options.teacher is not None and options.lesson is not None:
+        raise typer.BadParameter("give --lesson or --teacher, not both")
+
+
+def _carry_out(planned: UndoPlan, options: _Options, what: str, become: str, done: str) -> None:
+    """Show what the plan would change, ask, and write it unless --dry-run or the user forbid it.
+
+    Raises KnowledgeError if a robot runs on the file, before anything is replayed; typer.Exit if the user says no.
+    """
+    file, dry_run = options.file, options.dry_run
+    # sys.stdin is None if standard input was closed.
+    asks = not (dry_run or options.yes or options.no_preview) and sys.stdin is not None and sys.stdin.isatty()
+    if not dry_run and not options.no_preview:
+        require_no_robot(planned.path)
+    if dry_run or asks:
+        for record in planned.lessons:
+            say(f"{planned.path}: would be {become}: {format_lesson(record)}")
+        for refusal in planned.stay:
+            say(f"would stay as it is: {text_of(refusal)}")
+    if not options.no_preview:
+        _show(planned, options.runs)
+    if dry_run:
+        say("nothing was changed: --dry-run")
         return
+    if asks and not typer.confirm(_question(planned, what), err=True):
+        say("nothing was changed")
+        raise typer.Exit(ExitCode.FAILED)
     apply_plan(planned, utc_now())
     for record in planned.lessons:
-        say(f"{file}: redone: {format_lesson(record)}")
+        say(f"{file}: {done}: {format_lesson(record)}")
     for refusal in planned.stay:
-        say(f"stays undone: {text_of(refusal)}")
-    if teacher is not None:
-        stay = f", {len(planned.stay)} do not" if planned.stay else ""
-        say(f"{file}: {len(planned.lessons)} lessons of {teacher} redone{stay}")
+        say(f"stays as it is: {text_of(refusal)}")
+    if options.teacher is not None:
+        stay = f", {len(planned.stay)} are not" if planned.stay else ""
+        say(f"{file}: {len(planned.lessons)} lessons of {options.teacher} {done}{stay}")
 
 
-def _require_one_of(lesson: str | None, teacher: str | None) -> None:
-    if teacher is not None and lesson is not None:
-        raise typer.BadParameter("give --lesson or --teacher, not both")
+def _question(planned: UndoPlan, what: str) -> str:
+    if len(planned.lessons) == 1:
+        return f"{what.capitalize()} lesson {planned.lessons[0].event.origin.command_id}?"
+    return f"{what.capitalize()} these {len(planned.lessons)} lessons?"
+
+
+def _show(planned: UndoPlan, runs: Path | None) -> None:
+    recordings = runs or Path(load_service().recordings)
+    try_on = preview if runs else preview_on_newest
+    with replaying() as report:
+        shown = try_on(planned, recordings, report)
+    for tried in shown.runs:
+        for line in _changes(tried):
+            say(line)
+    for note in shown.notes:
+        say(f"not tried: {note}")
+    if not shown.runs and not shown.notes:
+        say(f"not tried: {recordings} holds no recorded run of such knowledge")
+
+
+def _changes(tried: TrialResult) -> Iterator[str]:
+    found = tried.found
+    decisions = f"{found.decided} decisions"
+    if tried.from_s:
+        decisions += f" from {tried.from_s:.0f} s on"
+    if found.same:
+        yield f"{tried.run}: not one of {decisions} would have been another"
+        return
+    counts = (
+        (found.other_action, "another action"),
+        (found.would_ask, "ask where it drove"),
+        (found.would_drive, "drive where it asked"),
+        (found.mid_otherwise, "another way"),
+    )
+    kinds = ", ".join(f"{count} times {what}" for count, what in counts if count)
+    yield f"{tried.run}: of {decisions}: {kinds}; the longest:"
+    longest = sorted(found.stretches, key=lambda each: -each.ticks)[:_MOST_STRETCHES]
+    for each in sorted(longest, key=lambda each: each.from_s):
+        change = f"{format_answer(each.would_be)}, instead of {format_answer(each.was)}"
+        yield f"  {each.from_s:7.2f} to {each.to_s:7.2f} s  {change}"

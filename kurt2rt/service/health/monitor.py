@@ -25,10 +25,11 @@ from kurt2rt.channel.protocol.health import (
     TickLateness,
 )
 from kurt2rt.core.tick_record import TickRecord
+from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.platform.durable_files import free_bytes
 from kurt2rt.runtime import Runtime
 from kurt2rt.service.health.diagnostics import CounterGrowth, Diagnostics
-from kurt2rt.service.health.probes import JournalStats, Probes
+from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.health.snapshot import Snapshot, take_snapshot
 
 _ENDS_WITHIN_S = 0.2
@@ -46,7 +47,7 @@ class HealthMonitor:
     def __init__(
         self,
         runtime: Runtime,
-        keeping: JournalStats,
+        keeping: JournalWriter,
         instruments: Probes,
         *,
         boot: str,
@@ -59,7 +60,7 @@ class HealthMonitor:
 
         Args:
             runtime: runtime of the robot.
-            keeping: statistics of the journal.
+            keeping: writer of the journal.
             instruments: other parts of the program.
             boot: id of this start, hexadecimal.
             knowledge: path of the knowledge file.

@@ -3,28 +3,8 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Protocol
 
 from hal.health import Health
-
-
-class JournalStats(Protocol):
-    """Statistics of the journal; kurt2rt.knowledge.journal.writer.JournalWriter is one."""
-
-    @property
-    def unwritten(self) -> int:
-        """Number of lessons that are not durable yet."""
-        ...
-
-    @property
-    def saving_error(self) -> str | None:
-        """Reason that lessons cannot be saved and what to do; None if they can."""
-        ...
-
-    @property
-    def last_write_s(self) -> float | None:
-        """Duration of the last write in s; None before the first."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)

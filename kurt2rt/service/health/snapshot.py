@@ -9,8 +9,9 @@ from kurt2rt.core.decision.standing import short_text
 from kurt2rt.core.rla.rla import rla_title
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.core.tick_record import TickRecord
+from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.runtime import Runtime
-from kurt2rt.service.health.probes import JournalStats, Probes
+from kurt2rt.service.health.probes import Probes
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,14 +42,14 @@ class Snapshot:
 
 
 def take_snapshot(
-    runtime: Runtime, record: TickRecord, keeping: JournalStats, instruments: Probes, now_s: float
+    runtime: Runtime, record: TickRecord, keeping: JournalWriter, instruments: Probes, now_s: float
 ) -> Snapshot:
     """Return the values of a program after a tick; takes some 10 µs and never waits.
 
     Args:
         runtime: of the program.
         record: of the tick.
-        keeping: statistics of the journal.
+        keeping: writer of the journal.
         instruments: parts outside the runtime.
         now_s: present time of the monotonic clock, in s.
     """

@@ -1,5 +1,7 @@
 """Reasons of a standing robot: page, terminal, status line and status give one text and one remedy."""
 
+from typing import cast
+
 import pytest
 
 from hal.guard_reason import GuardReason
@@ -25,6 +27,7 @@ from kurt2rt.core.decision.standing import (
 )
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Teach, Watch
+from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.health.snapshot import take_snapshot
 from kurt2rt.service.post_tick import ProgramStatus
@@ -84,7 +87,7 @@ def test_latched_stall_has_length_and_resume_on_every_surface() -> None:
     assert format_state(desk.picture) == standing_headline(stands, GO_IN_TERMINAL)
     short = short_text(stands)
     assert format_activity(ProgramStatus(desk.record, desk.runtime, 0, None, "")) == short
-    snapshot = take_snapshot(desk.runtime, desk.record, _Keeping(), Probes(), 0.0)
+    snapshot = take_snapshot(desk.runtime, desk.record, cast("JournalWriter", _Keeping()), Probes(), 0.0)
     assert snapshot.doing == short
 
 
@@ -164,7 +167,7 @@ def test_a_robot_that_is_held_at_a_bumper_asks_on_every_surface() -> None:
     assert str(build_question(picture)).startswith(f"{question} RLA 1 ")
     short = short_text(picture.standing)
     assert format_activity(ProgramStatus(desk.record, desk.runtime, 0, None, "")) == short
-    assert take_snapshot(desk.runtime, desk.record, _Keeping(), Probes(), 0.0).doing == short
+    assert take_snapshot(desk.runtime, desk.record, cast("JournalWriter", _Keeping()), Probes(), 0.0).doing == short
     assert picture.question == ()  # the situation is known: nothing differs
     assert not expects_answer(picture)  # an action that is typed corrects the RLA
     assert view_of_state(picture).asking  # and so a scripted teacher answers

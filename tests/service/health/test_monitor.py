@@ -2,10 +2,12 @@
 
 import threading
 from pathlib import Path
+from typing import cast
 
 import pytest
 
 from kurt2rt.channel.protocol.health import HealthReport
+from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.service.health.monitor import HealthMonitor, MachineMonitor, battery_of
 from kurt2rt.service.health.probes import Probes
 from tests.channel.channel_fixture import ChannelFixture
@@ -34,7 +36,7 @@ class Robot:
         instruments = Probes(drops={"lines": lambda: self.dropped})
         self.watch = HealthMonitor(
             self.desk.runtime,
-            self.keeping,
+            cast(JournalWriter, self.keeping),
             instruments,
             boot="626f6f74",
             knowledge=folder / "not made yet" / "x.knowledge",

@@ -19,8 +19,8 @@ from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.post_tick import ProgramConsole
-from kurt2rt.service.process_context import ProcessContext
 from kurt2rt.service.serve import ChannelOptions, ServeOptions, serve
+from kurt2rt.service.shutdown import ProcessContext
 from kurt2rt.service.simulated_runs import SimulatedRun, SimulatedRuns
 from kurt2rt.service.systemd.notifier import Notifier
 from kurt2rt.teacher.client.client import TeacherClient
