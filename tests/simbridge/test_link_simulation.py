@@ -10,7 +10,6 @@ import pytest
 
 from config.settings import SettingsError
 from hal.linked_robot import LinkedRobot
-from hal.robot import STANDSTILL, WheelSpeeds
 from hal.robot_settings import RobotSettings
 from hal.tap import Tap
 from simbridge.contracts.batch import BatchFactory
@@ -19,14 +18,12 @@ from simbridge.contracts.simulation import Pose, SimulationFactory
 from simbridge.link_simulation import LinkSimulationFactory
 from simbridge.robot.noise import Noise
 from simbridge.robot.world import World
-from simbridge.robot_simulation import RobotSimulation
 from simbridge.simulation import Kurt2SimulationFactory
 from tests.patience import PATIENCE_S
 from tests.simbridge.direct_link import DirectLink
 from tests.simbridge.rig import ROBOT
 
 FACTORY = LinkSimulationFactory(ROBOT, open_link=DirectLink)
-FORWARD = WheelSpeeds(0.3, 0.3)
 
 
 class CompassSensors:
@@ -46,35 +43,6 @@ class CompassSensors:
 
 def compass_sensors(robot: RobotSettings, world: World, noise: Noise, build: Noise) -> CompassSensors:  # noqa: ARG001
     return CompassSensors(len(robot.infrared.sensors))
-
-
-def drive(simulation: RobotSimulation, wanted: WheelSpeeds, cycles: int, start_s: float = 0.0) -> None:
-    for cycle in range(1, cycles + 1):
-        simulation.step()
-        now_s = start_s + cycle * ROBOT.cycle_s
-        simulation.robot.sense(now_s)
-        simulation.robot.drive(wanted, now_s, now_s)
-
-
-def test_link_simulation_drives_and_reports() -> None:
-    with closing(FACTORY.open("a", 1, "exam")) as simulation:
-        start = simulation.position
-        drive(simulation, FORWARD, 100)
-        readings = simulation.robot.sense(1.005)
-        assert simulation.position != start
-        assert readings.infrared_counts == simulation.simulated_robot.infrared_counts
-        assert readings.encoder_left_ticks == 0
-        drive(simulation, STANDSTILL, 100, start_s=1.01)
-        assert simulation.simulated_robot.wheel_speeds == pytest.approx((0.0, 0.0), abs=0.001)
-
-
-def test_link_simulation_robot_equals_kurt2_of_the_same_seed() -> None:
-    with (
-        closing(FACTORY.open("a", 5, "exam")) as simulation,
-        closing(Kurt2SimulationFactory(ROBOT).open("a", 5, "exam")) as kurt2,
-    ):
-        assert simulation.pose == kurt2.pose
-        assert simulation.simulated_robot.infrared_counts == kurt2.simulated_robot.infrared_counts
 
 
 def test_link_simulation_has_sensors_of_the_plug_in() -> None:

@@ -1,6 +1,5 @@
 """Real-time thread of the simulation."""
 
-import functools
 import threading
 
 import pytest
@@ -69,22 +68,6 @@ def test_context_raises_the_bodys_error_first(body_error: ValueError | None, rig
     rig.robot_end.shutdown()
     with pytest.raises(BusError if body_error is None else ValueError):
         run()
-
-
-def test_submit_runs_jobs_in_order_before_the_next_step(rig: Rig) -> None:
-    simulation = RealtimeSimulation(rig.robot)
-    done: list[tuple[str, str, float]] = []
-    finished = threading.Event()
-
-    def job(name: str) -> None:
-        done.append((name, threading.current_thread().name, rig.robot.time_s))
-
-    for name in ("first", "second"):
-        simulation.submit(functools.partial(job, name))
-    simulation.submit(finished.set)
-    with simulation:
-        assert finished.wait(PATIENCE_S)
-    assert done == [("first", "simulated-robot", 0.0), ("second", "simulated-robot", 0.0)]
 
 
 def test_submit_failing_job_ends_the_thread(rig: Rig) -> None:

@@ -12,7 +12,7 @@ from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_world import RealtimeWorld
 from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
 from tests.patience import PATIENCE_S
-from tests.simbridge.rig import ROBOT, Rig, facing_wall, room
+from tests.simbridge.rig import ROBOT, Rig, room
 
 BOARD = WallSettings(name="board", from_m=(0.5, 3.0), to_m=(1.5, 3.0), thickness_m=0.05)
 POST = RoundObstacleSettings(name="post", x_m=1.0, y_m=1.0, radius_m=0.1)
@@ -83,26 +83,6 @@ def test_nothing_is_put_where_the_robot_is(yard: Yard, name: str, dx_m: float, d
     yard.step()
     assert yard.ground.world().version == 0
     assert yard.rig.robot.world.settings == WORLD
-
-
-def test_move_wall_post_may_come_up_to_the_outline(yard: Yard) -> None:
-    to_touch_m = 2.0 - WIDTH_M / 2 - 0.1 - 1.0
-    yard.ground.move_wall("post", 1.0, 0.0)
-    with refused(WorldRefusal.WALL_ON_ROBOT, name="post"):
-        yard.ground.move_wall("post", 0.0, to_touch_m + 0.001)
-    yard.ground.move_wall("post", 0.0, to_touch_m - 0.001)
-
-
-def test_move_wall_robot_touching_another_wall_is_allowed() -> None:
-    with Rig(WORLD) as rig:
-        rig.robot.place(facing_wall(0.1))
-        rig.drive(20, 20, 2.0)
-        assert rig.robot.touching
-        with RealtimeSimulation(rig.robot) as simulation:
-            yard = Yard(rig, simulation)
-            yard.ground.move_wall("post", 0.5, 0.5)
-            yard.step()
-            assert yard.rig.robot.world.settings == WORLD.moved("post", 0.5, 0.5)
 
 
 @pytest.mark.parametrize(

@@ -48,15 +48,6 @@ def test_driver_speed_jump_never_crashes_the_controller(pair: Pair) -> None:
     assert kurt2.health.junk == 0
 
 
-def test_driver_speed_is_driven_and_sensed(pair: Pair) -> None:
-    drive(pair, WheelSpeeds(0.3, 0.3), 1.5)
-    before = pair[1].pose
-    readings = drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
-    assert pair[1].pose.x_m - before.x_m == pytest.approx(0.3, rel=0.08)
-    assert readings.encoder_left_ticks == pytest.approx(174, rel=0.05)
-    assert readings.infrared_counts == pair[1].infrared_counts
-
-
 def test_driver_bumper_stops_the_robot(pair: Pair) -> None:
     pair[1].place(facing_wall(0.3))
     readings = drive(pair, WheelSpeeds(0.3, 0.3), 3.0)

@@ -14,11 +14,3 @@ def test_body_catches_up_with_each_set_point_once() -> None:
     assert points.take(7) == [(0, 1), (2, 3), (4, 5)]
     assert points.take(7) == []
     assert points.take(4) == [(0, 1), (2, 3), (4, 5)]
-
-
-def test_body_does_not_catch_up_with_ticks_after_a_border() -> None:
-    points = SetPoints()
-    told = np.arange(12, dtype=np.int16).reshape(2, 3, 2)
-    points.add(np.array([4, 7]), told, np.array([0, 0]), np.array([1, 3]))
-    assert points.take(4) == [(0, 1)]
-    assert points.take(7) == [(6, 7), (8, 9), (10, 11)]

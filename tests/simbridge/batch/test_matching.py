@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from kurt2rt.core.rla.matching import exact_distances
 from simbridge.batch.laws import Conditions, Floats
 from simbridge.batch.matching import nearest_rla, scan_nearest
-from simbridge.batch.record import CANDIDATES, Robots, Sizes, empty_robots
+from simbridge.batch.record import Robots, Sizes, empty_robots
 from simbridge.batch.tables import build_conditions
 
 FEATURES, AVERAGE_STEPS = 36, 1000
@@ -59,15 +59,6 @@ def test_nearest_of_a_moving_situation_is_that_of_the_match(
         assert nearest_rla(robots[0], 0, rows, conditions) == expected
         guess = int(chance.integers(-1, rows))
         assert scan_nearest(rows, guess, conditions.values, robots["situation"][0]) == expected
-
-
-def test_nearest_of_more_equals_than_candidates_is_the_oldest() -> None:
-    rows, weights, robots = CANDIDATES + 9, np.ones(FEATURES), one_robot()
-    values = np.full((rows, FEATURES), 100.0)
-    robots["situation"][0, :FEATURES] = 101.0
-    robots["nearest"] = rows - 1
-    for _ in range(2):
-        assert nearest_rla(robots[0], 0, rows, conditions_of(values, weights)) == (0, 6.0)
 
 
 @pytest.mark.parametrize(

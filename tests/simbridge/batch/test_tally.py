@@ -7,26 +7,13 @@ import pytest
 
 from kurt2rt.experiments.lockstep.episode import StuckDetector, build_stuck_rule
 from simbridge.batch.laws import StuckLaw
-from simbridge.batch.record import Sizes, count_tick, empty_robots, restart_window
+from simbridge.batch.record import Sizes, count_tick, empty_robots
 from simbridge.contracts.simulation import Pose
 
 PERIOD_S = 0.01
-NO_RULE = StuckLaw(1, 0, 0.0)
 RULE = build_stuck_rule(3.0, PERIOD_S, least_m=0.5)
 SIZES = Sizes(1, 1, 1)
 """One size for all tests: each one is compiled by itself."""
-
-
-def test_questions_and_unknown_ticks_are_counted() -> None:
-    robot = empty_robots(1, SIZES)[0]
-    known, asks = [(2, 1)], [(-1, 1)]
-    begins: list[int] = []
-    for tick, (robot.action, robot.sure) in enumerate([*known, *asks * 2, *known * 49, *asks, *known * 50, *asks], 1):
-        robot.tick, robot.at = tick, tick - 1
-        count_tick(robot, NO_RULE)
-        begins += [tick] * robot.track_begins[robot.at]
-    assert begins == [2, 104]
-    assert (robot.unknown_ticks, robot.questions, robot.first_question) == (4, 2, 2)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -51,22 +38,3 @@ def test_batch_robot_is_stuck_in_the_tick_of_the_detector(seed: int) -> None:
             break
     assert found
     assert found[0] > 301
-
-
-@pytest.mark.parametrize("put_at", [7, 120])
-def test_robot_that_is_put_begins_the_window_of_the_detector(put_at: int) -> None:
-    detector = StuckDetector(3.0, PERIOD_S, least_m=0.5)
-    robot, law = empty_robots(1, SIZES)[0], StuckLaw(*RULE)
-    robot.kept_since = 1
-    for tick in range(1, 1000):
-        robot.tick = tick
-        count_tick(robot, law)
-        if tick == put_at:
-            robot.x_m = 5.0
-            restart_window(robot, law)
-            detector.restart()
-        stuck = detector.none_since_window(Pose(robot.x_m, robot.y_m, 0.0))
-        assert stuck == bool(robot.stuck)
-        if stuck:
-            break
-    assert tick == put_at + 300

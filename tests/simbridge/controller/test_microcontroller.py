@@ -7,14 +7,10 @@ from config.settings import SettingsError
 from hal.control import Mode, RawControl, RawSide, SpeedControl, SystemControl
 from simbridge.contracts.simulation import Pose
 from simbridge.simulated_kurt2 import SimulatedKurt2
-from tests.simbridge.rig import CODEC, ROBOT, STAND, Rig, facing_wall, room
+from tests.simbridge.rig import ROBOT, STAND, Rig, room
 
 FORWARD = SpeedControl(Mode.SPEED_CM, 30, 30)
 RESET = SystemControl(Mode.MC_RESET)
-EVERY_CYCLE = {"ADC00_03", "ADC04_07", "ADC08_11", "BDC00_03", "BDC04_07", "ENCODER", "BUMPERC"}
-SLOW = {
-    "INFO_1", "ADC12_15", "DEADRECK", "GETSPEED", "TILT_COMP", "GYRO_MC1", "INFO_2", "GYRO_MC2", "BDC08_11", "BDC12_15",
-}  # fmt: skip
 
 
 def control(payload: str) -> can.Message:
@@ -88,36 +84,6 @@ def test_actuators_off_holds_the_motors_until_on(rig: Rig) -> None:
     assert rig.speed_m_s == pytest.approx(0.30, abs=0.01)
 
 
-def test_telemetry_slow_frames_come_every_tenth_cycle(rig: Rig) -> None:
-    cycles = []
-    for _ in range(40):
-        rig.tell(STAND)
-        rig.robot.step()
-        cycles.append([CODEC.by_id[message.arbitration_id].name for message in rig.notebook.drain()])
-    assert all(set(names) >= EVERY_CYCLE for names in cycles)
-    assert {len(names) for names in cycles} == {8}
-    for name in SLOW:
-        heard_in = [number for number, names in enumerate(cycles) if name in names]
-        assert [number - heard_in[0] for number in heard_in] == [0, 10, 20, 30]
-    assert {name for names in cycles for name in names} == EVERY_CYCLE | SLOW
-
-
-def test_instruments_follow_the_robot(rig: Rig) -> None:
-    rig.drive(20, 20, 2.0)
-    rig.drive(-10, 10, 3.0)
-    rig.drive(0, 0, 1.0)
-    pose = rig.robot.pose
-    x_mm, y_mm, orientation = rig.heard["DEADRECK"]
-    assert (x_mm / 1000, y_mm / 1000) == pytest.approx((pose.x_m - 2.0, pose.y_m - 2.0), abs=0.05)
-    degrees = pose.heading_rad * 57.29578
-    assert orientation / 100 == pytest.approx(degrees, abs=5.0)
-    for gyro in ("GYRO_MC1", "GYRO_MC2"):
-        angle, variance = rig.heard[gyro]
-        assert angle / 4992511 == pytest.approx(degrees, abs=0.2)
-        assert variance > 0
-    assert rig.heard["TILT_COMP"][3] / 65536 * 360 == pytest.approx(degrees % 360, abs=0.2)
-
-
 def test_instruments_execute_their_commands(rig: Rig) -> None:
     rig.drive(-10, 10, 3.0)
     rig.drive(0, 0, 0.5)
@@ -138,14 +104,3 @@ def test_analog_frames_sensor_on_another_channel_is_refused(rig: Rig) -> None:
     infrared = ROBOT.infrared.model_copy(update={"sensors": (wrong, *ROBOT.infrared.sensors[1:])})
     with pytest.raises(SettingsError, match=r"s1.*ADC12"):
         SimulatedKurt2(ROBOT.model_copy(update={"infrared": infrared}), room(), rig.robot_end, 1)
-
-
-def test_bumpers_are_sent_as_long_as_the_contact_lasts(rig: Rig) -> None:
-    rig.robot.place(facing_wall(0.02))
-    seen = []
-    for speed in [15] * 80 + [-15] * 60:
-        rig.drive(speed, speed, 0.01)
-        seen.append(rig.heard["BUMPERC"][0] != 0)
-    first, last = seen.index(True), len(seen) - seen[::-1].index(True)
-    assert all(seen[first:last])
-    assert 80 < last < 120

@@ -16,13 +16,12 @@ from simbridge.survey.wall_rings import WallRings
 from simbridge.worlds.geometry import Point, polygons_of
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings
-from tests.simbridge.rig import ROBOT, Rig, board, box, post, room
+from tests.simbridge.rig import ROBOT, Rig, box, post, room
 
 NAMES = ("a", "b", "c")
 FIRST_OF_NAMES = ["a", *(pytest.param(name, marks=pytest.mark.deep) for name in ("b", "c"))]
 STEP_M = 0.05
 MIDDLE = (2.0, 2.0)
-ISLAND = box((1.6, 1.6), (2.4, 1.6), (2.4, 2.4), (1.6, 2.4), name="island")
 
 
 def straight(*corners: Point) -> Iterator[Point]:
@@ -59,53 +58,7 @@ def outer_ring(world: WorldSettings, position: Point = MIDDLE) -> shapely.Linear
     return WallRings(world, position).rings[0]
 
 
-@pytest.mark.parametrize("name", FIRST_OF_NAMES)
-@pytest.mark.parametrize("aside_m", [-0.05])
-def test_wall_progress_round_the_room_is_one_lap(name: str, aside_m: float) -> None:
-    world = World(load_world(name))
-    progress = WallProgress(world)
-    start = world.settings.start_poses[0]
-    way = shapely.Polygon(outer_ring(world.settings, (start.x_m, start.y_m))).buffer(aside_m).exterior
-    way = way.reverse() if way.is_ccw else way
-    for start in world.settings.start_poses:
-        begin_m = way.project(shapely.Point(start.x_m, start.y_m))
-        places = [way.interpolate((begin_m + i / 40 * way.length) % way.length) for i in range(41)]
-        assert counted(progress, *((place.x, place.y) for place in places)) == pytest.approx(1.0, abs=0.02)
-
-
 ROOM = room()
-CORRIDOR = room(walls=[board((0.8, 0.0), (0.8, 3.2))])
-DIVIDED = room(walls=[board((3.0, 0.0), (3.0, 4.0))])
-DOOR = room(walls=[board((2.0, 4.0), (2.0, 2.3)), board((2.0, 0.0), (2.0, 1.8), name="south")])
-BACKWARD = ((0.3, 2.0), (0.3, 0.3), (3.7, 0.3), (3.7, 3.7), (0.3, 3.7), (0.3, 2.0))
-FORWARD = ((0.3, 2.0), (0.3, 3.7), (3.7, 3.7), (3.7, 0.3), (0.3, 0.3), (0.3, 2.0))
-FROM_NORTH = ((2.0, 3.7), (3.7, 3.7), (3.7, 0.3), (0.3, 0.3), (0.3, 3.7), (2.0, 3.7))
-RIGHT_PART = ((3.3, 0.3), (3.3, 3.7), (3.7, 3.7), (3.7, 0.3), (3.3, 0.3))
-LEFT_PART = ((0.3, 0.3), (0.3, 3.7), (2.6, 3.7), (2.6, 0.3), (0.3, 0.3))
-TO_THE_DOOR = ((0.3, 0.3), (0.3, 3.7), (1.7, 3.7), (1.7, 2.05), (2.3, 2.05), (2.3, 3.7), (3.7, 3.7), (3.7, 0.3))
-FROM_THE_DOOR = ((2.3, 0.3), (2.3, 2.05), (1.7, 2.05), (1.7, 0.3), (0.3, 0.3))
-SWAYING = tuple((0.3 + (0.25 if i % 3 == 2 else 0.0), 0.3 + 0.3 * i) for i in range(12))
-OUT_OF_IT = ((0.8, 3.6), (3.6, 3.6), (3.6, 0.4), (1.2, 0.4), (1.2, 3.4), (0.5, 3.4), (0.5, 0.3), (0.3, 0.3))
-
-
-@pytest.mark.parametrize(
-    ("world", "corners", "laps", "tolerance"),
-    [
-        pytest.param(ROOM, BACKWARD, -1.0, 1e-6, id="backward"),
-        pytest.param(ROOM, BACKWARD + BACKWARD[1:], -2.0, 1e-6, id="backward twice"),
-        pytest.param(ROOM, (*FORWARD, (3.7, 2.1), *FORWARD), 2.0, 0.02, id="detour through the middle"),
-        pytest.param(ROOM, ((2.1, 1.9), *FROM_NORTH), 1.0, 0.02, id="start in the middle"),
-        pytest.param(ROOM, (*[(0.3, 1.0), (0.3, 3.0)] * 12, (0.3, 1.0)), 0.0, 1e-9, id="to and fro along a wall"),
-        pytest.param(DIVIDED, RIGHT_PART, 1.0, 1e-6, id="right part of a room"),
-        pytest.param(DIVIDED, LEFT_PART, 1.0, 1e-6, id="left part of a room"),
-        pytest.param(DOOR, TO_THE_DOOR + FROM_THE_DOOR, 1.0, 1e-6, id="narrow door"),
-        pytest.param(CORRIDOR, SWAYING + OUT_OF_IT, 1.0, 0.02, id="swaying in a corridor"),
-    ],
-)
-def test_wall_progress_of_a_path(
-    world: WorldSettings, corners: tuple[Point, ...], laps: float, tolerance: float
-) -> None:
-    assert counted(WallProgress(World(world)), *corners) == pytest.approx(laps, abs=tolerance)
 
 
 def test_wall_progress_after_a_moved_wall_is_surveyed_again() -> None:
@@ -140,25 +93,6 @@ def test_wall_progress_through_a_passage_is_one_lap(width_m: float, long_m: floa
     assert laps[-1] == pytest.approx(2.0, abs=0.04)
     # With both walls in reach, a robot in the passage has one on its left either way.
     assert -1.02 <= counted(progress, *reversed(once)) < -0.5
-
-
-def test_wall_progress_round_an_island_counts_its_length() -> None:
-    progress = WallProgress(World(room(boxes=[ISLAND])))
-    once = ((1.3, 1.3), (2.7, 1.3), (2.7, 2.7), (1.3, 2.7), (1.3, 1.3))
-    way_m, lap_m = 4 * (2.4 - 1.6) + 2 * math.pi * 0.35, 4 * (4.0 - 2 * 0.35)
-    assert progress.lap_m == pytest.approx(lap_m)
-    assert counted(progress, *once, *once[1:]) == pytest.approx(2 * way_m / lap_m, rel=0.03)
-    assert counted(progress, *reversed(once)) == pytest.approx(-way_m / lap_m, rel=0.03)
-
-
-def test_wall_progress_with_the_wall_on_the_right_is_a_mirror() -> None:
-    world = World(room(boxes=[ISLAND]))
-    left, right = WallProgress(world), WallProgress(world, side="right")
-    corners: tuple[Point, ...] = ((0.4, 0.4), (0.4, 3.6), (3.6, 3.6), (3.6, 0.4), (0.4, 0.4))
-    assert counted(right, *reversed(corners)) == pytest.approx(1.0, abs=0.03)
-    assert counted(right, *corners) == pytest.approx(-1.0, abs=0.03)
-    mirrored: list[Point] = [(4.0 - x_m, y_m) for x_m, y_m in corners]
-    assert counted(right, *mirrored) == pytest.approx(counted(left, *corners), abs=0.005)
 
 
 @given(

@@ -1,20 +1,12 @@
 """Motion of the simulated robot: modes, limits, slip, collisions."""
 
-import itertools
-import math
-
 import pytest
 
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl
-from hal.kurt2_settings import Kurt2Settings
 from simbridge.contracts.simulation import Pose
-from tests.simbridge.rig import ROBOT, STAND, Rig, board, facing_wall, room
+from tests.simbridge.rig import ROBOT, Rig, board, facing_wall, room
 
 RAW_DRIVE = RawControl(RawSide(650), RawSide(650))
-
-
-def robot_with_track(track_m: float) -> Kurt2Settings:
-    return ROBOT.model_copy(update={"geometry": ROBOT.geometry.model_copy(update={"effective_track_m": track_m})})
 
 
 @pytest.mark.parametrize(
@@ -34,27 +26,6 @@ def test_each_mode_drives_at_its_set_point(control: Control, speed_m_s: float, r
     before = rig.robot.pose
     rig.run(2.0, control)
     assert rig.robot.pose.x_m - before.x_m == pytest.approx(2.0 * speed_m_s, rel=0.05, abs=1e-6)
-
-
-def test_motors_keep_their_acceleration_limits(rig: Rig) -> None:
-    speeds = [0.0]
-    for control in [SpeedControl(Mode.SPEED_CM, 44, 44)] * 100 + [STAND] * 100:
-        rig.step(control)
-        speeds.append(rig.speed_m_s)
-    changes = [after - before for before, after in itertools.pairwise(speeds)]
-    rounding = 2 * ROBOT.geometry.metres_per_tick / ROBOT.cycle_s
-    assert max(changes) == pytest.approx(ROBOT.motors.acceleration_m_s2 * 0.01, abs=rounding)
-    assert min(changes) == pytest.approx(-ROBOT.motors.braking_m_s2 * 0.01, abs=rounding)
-
-
-@pytest.mark.parametrize("track_m", [0.385, 0.50])
-def test_a_spin_turns_by_the_effective_track(track_m: float) -> None:
-    with Rig(robot=robot_with_track(track_m)) as rig:
-        rig.drive(-20, 20, 4.0)
-        rig.drive(0, 0, 1.0)
-        rolled_m = (rig.ticks[1] - rig.ticks[0]) * ROBOT.geometry.metres_per_tick
-        assert rig.robot.pose.heading_rad == pytest.approx(rolled_m / track_m, rel=0.04)
-        assert math.dist(rig.robot.pose[:2], (2.0, 2.0)) < 0.04
 
 
 def test_wall_ahead_blocks_the_body_and_is_one_collision(rig: Rig) -> None:
@@ -77,19 +48,6 @@ def test_second_contact_is_a_second_collision(rig: Rig) -> None:
     assert rig.heard["BUMPERC"] == (0, 0)
     rig.drive(20, 20, 3.0)
     assert rig.robot.collisions == 2
-
-
-@pytest.mark.parametrize(("heading_deg", "bits"), [(20, 0b100), (-20, 0b001)])
-def test_body_corner_at_a_wall_presses_its_bumper(heading_deg: float, bits: int) -> None:
-    """The contact lies at the edge of the bar, where rounding must not decide."""
-    with Rig() as rig:
-        rig.robot.place(Pose(3.5, 2.0, math.radians(heading_deg)))
-        pressed: list[int] = []
-        while len(pressed) < 12:
-            rig.drive(10, 10, 0.01)
-            if rig.robot.touching:
-                pressed.append(rig.heard["BUMPERC"][0])
-    assert set(pressed) == {bits}
 
 
 @pytest.mark.parametrize("speed_cm_s", [90])

@@ -1,10 +1,7 @@
 """Maps of ROS's map_server as worlds."""
 
-import itertools
 import json
-import math
 import os
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +12,6 @@ import yaml
 from numpy.typing import NDArray
 from PIL import Image
 
-from simbridge.worlds.map_server.tracing import trace
 from simbridge.worlds.map_server.world import MOST_WALLS, MapSettings, drivable_cells
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings
@@ -48,17 +44,8 @@ def drawn(free: shapely.Geometry, width: int = 100, height: int = 80) -> Shades:
     return np.where(shapely.contains_xy(free, x, y), FREE, UNKNOWN).astype(np.uint8)[::-1]
 
 
-def write_p2(path: Path, shades: Shades) -> None:
-    rows = "\n".join(" ".join(str(shade) for shade in row) for row in shades)
-    path.write_text(f"P2\n# by hand\n{shades.shape[1]} {shades.shape[0]}\n255\n{rows}\n", encoding="ascii")
-
-
 def write_p5(path: Path, shades: Shades) -> None:
     path.write_bytes(f"P5 {shades.shape[1]} {shades.shape[0]} 255\n".encode() + shades.tobytes())
-
-
-def write_png(path: Path, shades: Shades) -> None:
-    Image.fromarray(shades).save(path)
 
 
 def write_yaml(path: Path, content: dict[str, object]) -> str:
@@ -84,79 +71,8 @@ def floor_of(world: WorldSettings) -> shapely.Polygon:
     return world.free_space
 
 
-@pytest.mark.parametrize(("name", "write"), [("flat2.pgm", write_p2), ("flat5.pgm", write_p5), ("flat.png", write_png)])
-def test_map_walls_along_the_grid_are_exact(name: str, write: Callable[[Path, Shades], None], tmp_path: Path) -> None:
-    write(tmp_path / name, drawn(FLAT))
-    world = load_world(write_yaml(tmp_path / "flat.yaml", {**PLAIN, "image": name}), ROBOT)
-    assert world.name == "flat"
-    assert world.size_m == pytest.approx((4.0, 3.0))
-    wanted = shapely.affinity.scale(shapely.affinity.translate(FLAT, -10, -10), CELL_M, CELL_M, origin=(0, 0))
-    assert floor_of(world).hausdorff_distance(wanted) == pytest.approx(0.0, abs=1e-9)
-    assert [len(island.corners) for island in world.polygon_obstacles] in ([6, 4], [4, 6])
-    assert world.infrared_rays == 1
-
-
-@pytest.mark.parametrize("turn_deg", [28, 45])
-def test_trace_slanted_walls_are_within_a_cell(turn_deg: int) -> None:
-    floor = shapely.box(30, 30, 130, 90).difference(shapely.box(60, 50, 90, 70))
-    floor = shapely.affinity.rotate(floor, turn_deg)
-    (traced,) = trace(drawn(floor, 160, 160)[::-1] == FREE)
-    walls = floor.boundary.difference(shapely.MultiPoint(shapely.get_coordinates(floor)).buffer(2.0))
-    places = [line.interpolate(i / 50, normalized=True) for line in shapely.get_parts(walls) for i in range(51)]
-    assert max(traced.boundary.distance(place) for place in places) < 1.05
-    assert traced.symmetric_difference(floor).area <= 0.35 * floor.length
-    assert traced.boundary.hausdorff_distance(floor.boundary) <= 1.5, "corners"
-    assert len(shapely.get_coordinates(traced)) <= 70
-
-
-def test_map_starts_are_at_a_left_wall_and_reproducible(tmp_path: Path) -> None:
-    path = write_map(tmp_path)
-    world = load_world(path, ROBOT)
-    assert load_world(path, ROBOT) == world
-    floor = floor_of(world)
-    assert len(world.start_poses) == 8
-    for start in world.start_poses:
-        at = shapely.Point(start.x_m, start.y_m)
-        away_m = floor.boundary.distance(at)
-        assert 0.33 < away_m < 0.42
-        left = shapely.affinity.translate(at, *(away_m * part for part in left_of(start.heading_deg)))
-        assert floor.boundary.distance(left) < 1e-6
-    for one, other in itertools.combinations(world.start_poses, 2):
-        assert math.dist((one.x_m, one.y_m), (other.x_m, other.y_m)) >= 0.5
-
-
-def left_of(heading_deg: float) -> tuple[float, float]:
-    heading_rad = math.radians(heading_deg)
-    return -math.sin(heading_rad), math.cos(heading_rad)
-
-
-def test_map_of_several_rooms_uses_the_roomiest(tmp_path: Path) -> None:
-    shades = drawn(FLAT, 300, 80)
-    # Larger, but a corridor that the robot cannot turn in.
-    shades[0:8, 5:295] = FREE
-    shades[8:70, 100:110] = FREE
-    assert load_world(write_map(tmp_path, shades), ROBOT).size_m == pytest.approx((4.0, 3.0))
-
-
 def world_on(folder: Path, **change: object) -> str:
     return write_yaml(folder / "mine.yaml", {"map": "flat.yaml", "start_poses": [START], **change})
-
-
-def test_world_on_map_starts_are_in_the_maps_frame(tmp_path: Path) -> None:
-    write_map(tmp_path)
-    world = load_world(world_on(tmp_path, infrared_rays=3), ROBOT)
-    assert (world.name, world.infrared_rays) == ("mine", 3)
-    (start,) = world.start_poses
-    # The room begins 10 cells right of and above the map's lower left corner, (-10, -7.5).
-    assert (start.x_m, start.y_m, start.heading_deg) == pytest.approx((0.6, 1.5, 90.0))
-
-
-def test_world_on_map_rotated_origin_turns_the_starts(tmp_path: Path) -> None:
-    write_map(tmp_path, origin=[2.0, 1.0, math.pi / 2])
-    start = {"x_m": 2.0 - 2.0, "y_m": 1.0 + 1.1, "heading_deg": 180.0}
-    world = load_world(world_on(tmp_path, start_poses=[start]), ROBOT)
-    (found,) = world.start_poses
-    assert (found.x_m, found.y_m, found.heading_deg) == pytest.approx((0.6, 1.5, 90.0))
 
 
 @pytest.mark.parametrize(
@@ -176,35 +92,6 @@ def test_drivable_cells_follow_the_modes(
     assert cells(tmp_path, mode=mode, negate=negate) == [drivable]
 
 
-@pytest.mark.parametrize("around", ["saved as unknown", "transparent white", "transparent, negated"])
-def test_map_of_nav2_is_the_room_alone(around: str, tmp_path: Path) -> None:
-    room = drawn(shapely.box(20, 10, 80, 70)) == FREE
-    colour, opacity = {"saved as unknown": (UNKNOWN, 255), "transparent white": (255, 0)}.get(around, (0, 0))
-    negate = int(around.endswith("negated"))
-    cells_of = np.where(room, 255 - FREE if negate else FREE, colour).astype(np.uint8)
-    alpha = np.where(room, 255, opacity).astype(np.uint8)
-    if opacity == 255:
-        write_p5(tmp_path / "flat.pgm", cells_of)
-    else:
-        Image.merge("LA", [Image.fromarray(each) for each in (cells_of, alpha)]).save(tmp_path / "flat.png")
-    image = "flat.pgm" if opacity == 255 else "flat.png"
-    # Opacity counts as brightness also in a negated map, so that its free cells are a quarter occupied.
-    map_saver = {**PLAIN, "image": image, "mode": "trinary", "free_thresh": 0.3 if negate else 0.25, "negate": negate}
-    world = load_world(write_yaml(tmp_path / "flat.yaml", map_saver), ROBOT)
-    assert floor_of(world).area == pytest.approx(9.0)
-    assert all(floor_of(world).contains(shapely.Point(start.x_m, start.y_m)) for start in world.start_poses)
-
-
-def test_map_file_of_other_programs_is_read(tmp_path: Path) -> None:
-    write_p5(tmp_path / "flat.pgm", drawn(FLAT))
-    (tmp_path / "flat.yml").write_text(
-        "Image: flat.pgm\nresolution: 5e-2\norigin: [-1e1, -7.5e0, 0.0]\nnegate: 0\noccupied_thresh: 65e-2\n"
-        "free_thresh: 0.196\nfloor: 2\nnodes: {door: [7e2, 1]}\n",
-        encoding="utf-8",
-    )
-    assert load_world(str(tmp_path / "flat.yml"), ROBOT) == load_world(write_map(tmp_path), ROBOT)
-
-
 def test_drivable_cells_of_colours_and_transparency(tmp_path: Path) -> None:
     colours = np.array([[[254, 254, 254, 255], [255, 255, 150, 255], [160, 160, 160, 255], [160, 160, 160, 128]]])
     Image.fromarray(colours.astype(np.uint8)).save(tmp_path / "flat.png")
@@ -217,15 +104,6 @@ def test_drivable_cells_of_16_bits_and_a_palette(tmp_path: Path) -> None:
     assert cells(tmp_path, image="flat.png") == [[True, False, False]]
     Image.fromarray(np.array([[255, 205, 0]], dtype=np.uint8)).convert("P").save(tmp_path / "flat.png")
     assert cells(tmp_path, image="flat.png") == [[True, False, False]]
-
-
-def test_trace_separates_cells_that_touch_at_a_corner() -> None:
-    free = np.zeros((40, 40), dtype=np.bool_)
-    free[2:20, 2:20] = free[20:38, 20:38] = True
-    free[8:12, 8:12] = free[12:14, 12:14] = False
-    traced = trace(free)
-    assert all(polygon.is_valid for polygon in traced)
-    assert sum(polygon.area for polygon in traced) == pytest.approx(free.sum(), rel=0.01)
 
 
 @pytest.mark.parametrize(

@@ -90,20 +90,6 @@ def test_load_world_wrong_file_names_file_and_key(
     assert [fragment for fragment in fragments if fragment not in message] == []
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        {},
-        {"start_poses": [AHEAD, {**AHEAD, "heading_deg": 90}, {**AHEAD, "x_m": 1.52}]},
-        {"walls": [{**DIVIDER, "to_m": [0.8, 2.66]}], "start_poses": TWO_STARTS},
-        {"walls": [{**BOARD, "from_m": [-0.2, 2.9], "to_m": [0.5, 3.2]}]},
-        {"polygon_obstacles": [{"name": "bay", "corners": BAY}]},
-    ],
-)
-def test_load_world_unusual_worlds_are_accepted(change: dict[str, object], tmp_path: Path) -> None:
-    assert load_world(written(tmp_path, change)).name == "plain"
-
-
 def test_concave_obstacle_lets_the_robot_in() -> None:
     with Rig(room(boxes=[box(*((x + 1.0, y - 0.5) for x, y in BAY))])) as rig:
         rig.run(0.5)
