@@ -1,6 +1,6 @@
 """Progress bars for jobs that are counted in seconds of robot time."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
@@ -52,6 +52,10 @@ class OneBar:
         # One name and a number, so that the times next to it have room.
         doing = f"{first} and {len(others)} more" if others else first
         self._progress.update(self._id, completed=progress.done_s, description=doing)
+
+    def after(self, before_s: float) -> Callable[[PoolProgress], None]:
+        """Return `update` for jobs that follow others of `before_s` seconds of robot time."""
+        return lambda progress: self.update(progress._replace(done_s=before_s + progress.done_s))
 
     def begin_next(self, whole_s: float) -> None:
         """Begin a further bar below, of `whole_s` seconds of robot time, for drives after the jobs."""

@@ -1,6 +1,6 @@
 """Options, run and end of a study, with one meaning in all of its commands."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,11 +13,13 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs
 from kurt2rt.cli.progress import OneBar, one_bar
+from kurt2rt.cli.tables import print_told
 from kurt2rt.experiments.study.bus_witness import require_no_difference
 from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.pool import Executor, Waves, missing_time_s, open_processes, run_missing
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.runner import Executor, Waves, missing_time_s, open_processes, run_missing
-from kurt2rt.experiments.study.study_plan import AboutT, EngineChoice, EngineRequest, RequestedEngine, StudyPlan
+from kurt2rt.experiments.study.study_plan import AboutT, EngineRequest, StudyPlan
+from kurt2rt.experiments.study.table import Told
 from simbridge.contracts.robot_kind import simulations_of
 
 Cluster = Annotated[
@@ -54,14 +56,14 @@ class EngineOptions(JobOptions):
 
     engine: EngineOption = EngineRequest.AUTO
 
-    def requested_engine(self) -> RequestedEngine:
-        """Return the request; say on standard error that an explicit compiled engine is not compiled."""
+    def requested_engine(self) -> EngineRequest:
+        """Return the engine, which is the CAN bus if auto finds no compiler; warn if a batch is not compiled."""
         # Not at the top: the simulator is an extra, and every command is loaded where --help is said.
         from simbridge.batch.compiled import IS_COMPILED
 
         if self.engine is EngineRequest.COMPILED:
             say_if_interpreted()
-        return RequestedEngine(self.engine, compiled=IS_COMPILED)
+        return EngineRequest.CAN if self.engine is EngineRequest.AUTO and not IS_COMPILED else self.engine
 
 
 def job_parts(robot: RobotSettings, folder: Path) -> JobParts:
@@ -77,21 +79,11 @@ def say_if_interpreted() -> None:
         typer.echo("numba is not installed (extra fast): the batch runs as plain Python, as slow as the bus", err=True)
 
 
-def _say_choice(choice: EngineChoice) -> None:
-    """Say on standard error how many jobs a batch drives, how many have a witness, and what the batch does not know."""
-    for refusal in choice.refusals:
-        typer.echo(refusal, err=True)
-    if choice.engines:
-        jobs = f"{len(choice.engines)} job{'' if len(choice.engines) == 1 else 's'}"
-        typer.echo(f"the study has {jobs} in the batch, {len(choice.witnessed)} of them on the CAN bus too", err=True)
-
-
 @contextmanager
 def open_executor(cluster: Path | None, jobs: int) -> Iterator[Executor]:
-    """Yield the executor of --cluster; without it, one with processes of this machine.
+    """Yield the executor of --cluster; without it, one with so many processes of this machine.
 
-    `jobs`: number of these processes. Raises ClusterError if `cluster` is no file of a cluster, or no scheduler of it
-    answers.
+    Raises ClusterError if `cluster` is no file of a cluster, or no scheduler of it answers.
     """
     if cluster is None:
         with open_processes(jobs) as local:
@@ -104,35 +96,13 @@ def open_executor(cluster: Path | None, jobs: int) -> Iterator[Executor]:
         yield executor
 
 
-@contextmanager
-def says_how_to_go_on(results: Results) -> Iterator[None]:
-    """Say at Ctrl-C that finished jobs are kept."""
-    try:
-        yield
-    except BaseException as error:
-        group = error if isinstance(error, BaseExceptionGroup) else BaseExceptionGroup("", [error])
-        if group.subgroup(KeyboardInterrupt) is not None:
-            say = Console(stderr=True, highlight=False).print
-            say(
-                f"kurt2rt: stopped; finished jobs are in {results.folder}, those that ran begin again. "
-                "The same command goes on from there",
-                markup=False,
-                soft_wrap=True,
-            )
-        raise
-
-
 @dataclass(frozen=True, slots=True)
 class RunningStudy:
-    """Study whose jobs are done, and whose folder is held while tables and figures are made."""
+    """Folder of a study, which is held, and the executor of its jobs."""
 
     bar: OneBar
     executor: Executor
     results: Results
-
-    def say(self, what: str) -> None:
-        """Show what is done after the jobs."""
-        self.bar.say(what)
 
     def run(self, waves: Waves) -> None:
         """Run further jobs that have no result, with a bar of their own."""
@@ -142,27 +112,49 @@ class RunningStudy:
 
 
 @contextmanager
-def study_run(plan: StudyPlan[AboutT], parts: JobParts, options: JobOptions) -> Iterator[RunningStudy]:
-    """Run the jobs of a study that have no result; the context holds the folder while tables and figures are made.
+def hold_study(results: Results, source: str, options: JobOptions) -> Iterator[Executor]:
+    """Hold the folder of a study, and yield the executor of its jobs; at Ctrl-C say that finished jobs are kept.
 
-    Args:
-        plan: of the study.
-        parts: with the folder of its results.
-        options: of the command.
+    `source`: hash of the program's source. `options`: of the command.
 
     Raises:
-        StudyError: another run writes to the folder, or it has results of other settings.
-        BatchDiffersError: a witness in the folder, or of this run, differs from the batch.
+        StudyError: another run writes to the folder.
+        BatchDiffersError: a witness in the folder differs from the batch.
         ClusterError: --cluster is no file of a cluster, or no scheduler of it answers.
     """
     import scipy.special  # noqa: F401 # of the extra `studies`: told before the jobs, not hours after them
 
-    results = parts["results"]
-    with says_how_to_go_on(results), open_executor(options.cluster, options.jobs) as executor, results.held():
-        require_no_difference(results, {job.made_of.source for job in plan.jobs})
+    try:
+        with open_executor(options.cluster, options.jobs) as executor, results.held():
+            require_no_difference(results, [source])
+            yield executor
+    except BaseException as error:
+        group = error if isinstance(error, BaseExceptionGroup) else BaseExceptionGroup("", [error])
+        if group.subgroup(KeyboardInterrupt) is not None:
+            Console(stderr=True, highlight=False).print(
+                f"kurt2rt: stopped; finished jobs are in {results.folder}, those that ran begin again. "
+                "The same command goes on from there",
+                markup=False,
+                soft_wrap=True,
+            )
+        raise
+
+
+def run_study(plan: StudyPlan[AboutT], options: JobOptions, tell: Callable[[RunningStudy], Told]) -> None:
+    """Run the jobs of a study that have no result, and print what `tell` returns, which gets the study.
+
+    Raises the errors of `hold_study` and of all jobs, and StudyError if the folder has results of other settings.
+    """
+    results = plan.results
+    with hold_study(results, plan.jobs[0].made_of.source, options) as executor:
         missing_s = missing_time_s(plan.waves, results)
-        if missing_s:
-            _say_choice(plan.choice)
+        batch = sum(job.engines.in_batch for job in plan.jobs)
+        jobs, witnesses = f"{batch} job{'' if batch == 1 else 's'}", len(plan.witnesses)
+        in_batch = [f"the study has {jobs} in the batch, {witnesses} of them on the CAN bus too"] if batch else []
+        for line in (*plan.refusals, *in_batch) if missing_s else ():
+            typer.echo(line, err=True)
         with one_bar(missing_s) as bar:
             run_missing(plan.waves, results, executor, bar.update)
-            yield RunningStudy(bar, executor, results)
+            bar.say("tables and figures")
+            told = tell(RunningStudy(bar, executor, results))
+    print_told(told, as_json=options.as_json)

@@ -1,17 +1,16 @@
 """Tables on standard output, and how a study ends there."""
 
 import os
-from collections.abc import Iterable
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rich.console import Console
+from rich.text import Text
 
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.platform.text_table import print_whole
 
 if TYPE_CHECKING:
-    from kurt2rt.experiments.study.table import Table
+    from kurt2rt.experiments.study.table import Told
 
 
 _UNLIMITED = 100_000
@@ -25,24 +24,20 @@ def console_of() -> Console:
     return Console(highlight=False, width=_UNLIMITED)
 
 
-def print_study(
-    tables: "Iterable[Table]", reasons_not_to_judge: Iterable[str], *, as_json: bool = False, **files: Path
-) -> None:
-    """Print the tables of a study, the reasons not to judge it, and the paths of the files that it leaves.
-
-    `as_json`: as one JSON document. `files`: by what they are, such as report.
-    """
+def print_told(told: "Told", *, as_json: bool) -> None:
+    """Print the tables of a study, the reasons not to judge it, and the paths of its files; or one JSON document."""
     if as_json:
-        print_json({"tables": tables_of(tables), "not_judged": list(reasons_not_to_judge), **files})
+        # Cells are texts, as they are printed.
+        tables = [
+            {"title": each.title, "columns": each.columns, "rows": each.rows, "note": each.note} for each in told.tables
+        ]
+        print_json({"tables": tables, "not_judged": told.not_judged, **told.files, **told.data})
         return
     # Not at the top: the simulator is an extra, and this module is imported without it.
     from kurt2rt.experiments.study.table import as_rich
 
-    console = console_of()
-    print_whole(console, *map(as_rich, tables), *(f"Not judged: {reason}" for reason in reasons_not_to_judge))
-    print_whole(console, *(f"{what}  {path}" for what, path in files.items()))
-
-
-def tables_of(tables: "Iterable[Table]") -> list[dict[str, Any]]:
-    """Return tables for JSON: cells are texts, as they are printed."""
-    return [{"title": each.title, "columns": each.columns, "rows": each.rows, "note": each.note} for each in tables]
+    reasons = (f"Not judged: {reason}" for reason in told.not_judged)
+    to_copy = (Text(line, no_wrap=True) for line in told.lines)
+    width = max(map(len, told.files), default=0)
+    files = (f"{what:<{width}}  {path}" for what, path in told.files.items())
+    print_whole(console_of(), *map(as_rich, told.tables), *reasons, *to_copy, *files)

@@ -5,15 +5,16 @@ from pathlib import Path
 import anyio
 import typer
 
+from behaviors.metrics.errands import ErrandsSettings
+from behaviors.metrics.route import RouteSettings
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.options import changes_of
 from kurt2rt.cli.progress import job_bars
-from kurt2rt.cli.study_run import study_run
+from kurt2rt.cli.study_run import run_study
 from kurt2rt.cli.tables import console_of
-from kurt2rt.cli.train_errands import errands, runs_errands
 from kurt2rt.cli.train_options import DEFAULT_TASK, FOLDER, TrainOptions, TrainSetup
-from kurt2rt.cli.train_route import many_routes, one_route, require_no_route_options, teaches_route
+from kurt2rt.cli.train_route import errands, many_routes, one_route, require_no_route_options
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.core.task_settings import taught_by_named
@@ -24,7 +25,7 @@ from kurt2rt.experiments.study.exam_tables import curriculum_as_data, lesson_tab
 from kurt2rt.experiments.study.jobs import require_places
 from kurt2rt.experiments.study.seeds import forget_lost_robots, forget_result, make_plan, read_results
 from kurt2rt.experiments.study.study_plan import EngineRequest
-from kurt2rt.experiments.study.table import as_rich
+from kurt2rt.experiments.study.table import Told, as_rich
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole
@@ -71,9 +72,9 @@ def train(options: TrainOptions) -> None:
         typer.echo(
             f"{task.name}: lessons and exams on the CAN bus, because a batch does not know a mid level", err=True
         )
-    if runs_errands(task):
+    if isinstance(task.metric, ErrandsSettings):
         errands(setup, options)
-    elif not teaches_route(task):
+    elif not isinstance(task.metric, RouteSettings):
         require_no_route_options(task, options)
         _basic_task(setup, options)
     elif options.seeds is None:
@@ -133,11 +134,11 @@ def _many_seeds(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
     parts = setup.parts(out)
     plan = make_plan(setup.task, options.all_seeds, parts, engine=options.requested_engine())
     forget_lost_robots(plan)
-    with study_run(plan, parts, options):
-        robots = read_results(plan)
-    if options.as_json:
-        data = [curriculum_as_data(each.lesson, each.drives, setup.task) for each in robots]
-        print_json({"task": setup.task.name, "teacher": setup.task.teaching.profile.name, "robots": data})
-    else:
-        tables = seeds_tables([(each.lesson, each.drives) for each in robots], setup.task)
-        print_whole(console_of(), *map(as_rich, tables))
+
+    def tell(_: object) -> Told:
+        robots, task = read_results(plan), setup.task
+        data = [curriculum_as_data(each.lesson, each.drives, task) for each in robots]
+        told = {"task": task.name, "teacher": task.teaching.profile.name, "robots": data}
+        return Told(list(seeds_tables(robots, task)), data=told)
+
+    run_study(plan, options, tell)

@@ -1,27 +1,18 @@
-"""`kurt2rt train --task route`: robots that know the streets are taught routes through them."""
+"""`kurt2rt train` of route and errands: robots that know the streets are taught routes, or sent to places."""
 
 import anyio
 import typer
 
-from behaviors.metrics.route import RouteSettings
-from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.progress import job_bars
-from kurt2rt.cli.study_run import study_run
-from kurt2rt.cli.tables import console_of, print_study, tables_of
-from kurt2rt.cli.train_options import ROUTES, TrainOptions, TrainSetup
+from kurt2rt.cli.study_run import run_study
+from kurt2rt.cli.tables import print_told
+from kurt2rt.cli.train_options import ERRANDS, ROUTES, TrainOptions, TrainSetup
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.route.study import BasicJob, RouteJob, RouteOutcome, make_plan
-from kurt2rt.experiments.study.table import as_rich
-from kurt2rt.experiments.study.targets import reasons_against_judging
+from kurt2rt.experiments.study.table import Told
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.journal.loading import copy_knowledge
-from kurt2rt.platform.text_table import print_whole
-
-
-def teaches_route(task: TaskSettings) -> bool:
-    """Return whether the task teaches a route."""
-    return isinstance(task.metric, RouteSettings)
 
 
 def require_no_route_options(task: TaskSettings, options: TrainOptions) -> None:
@@ -71,30 +62,32 @@ def one_route(setup: TrainSetup, options: TrainOptions) -> None:
         outcome = anyio.run(run, report)
     picture = out / f"{stem}.png"
     draw_route(setup.factory, outcome, picture)
-    table = robot_table(outcome, task)
-    if options.as_json:
-        print_json({"tables": tables_of([table]), "knowledge": file, "picture": picture})
-    else:
-        print_whole(console_of(), as_rich(table), f"knowledge  {file}", f"picture  {picture}")
+    told = Told([robot_table(outcome, task)], files={"knowledge": file, "picture": picture})
+    print_told(told, as_json=options.as_json)
 
 
 def many_routes(setup: TrainSetup, options: TrainOptions) -> None:
     """Teach and examine many robots; keep results that are in the folder. Print tables and write a report.
 
-    Raises:
-        SettingsError: task, robot or world cannot be loaded.
-        StudyError: another run writes to the folder, or it has results of other settings.
-        KnowledgeError: a knowledge file of the streets cannot be read.
+    Raises the errors of `one_route`, and StudyError if another run writes to the folder, or it has results of other
+    settings.
     """
-    from kurt2rt.experiments.route.figures import draw_figures
-    from kurt2rt.experiments.route.tables import all_tables, read_study, write_routes
+    from kurt2rt.experiments.route.tables import tell
 
     parts = setup.parts(options.out or ROUTES)
     plan = make_plan(setup.task, options.all_seeds, options.decisions or (), parts, basic_folder=options.basic)
-    with study_run(plan, parts, options) as bar:
-        bar.say("pictures and report")
-        study, folder = read_study(plan), parts["results"].folder
-        pictures = list(draw_figures(study, setup.factory, folder))
-        report = folder / "report.html"
-        write_routes(study, pictures, setup.command, report)
-    print_study(all_tables(study), reasons_against_judging(plan.seeds), as_json=options.as_json, report=report)
+    run_study(plan, options, lambda _: tell(plan, setup.command))
+
+
+def errands(setup: TrainSetup, options: TrainOptions) -> None:
+    """Lead robots through a town and send them to places; print tables and draw each robot.
+
+    Raises the errors of `many_routes`, and typer.BadParameter if an option belongs to other tasks.
+    """
+    from kurt2rt.experiments.navigation.study import make_plan
+    from kurt2rt.experiments.navigation.tables import tell
+
+    if options.decisions or options.knowledge is not None:
+        raise typer.BadParameter("errands take neither --decisions nor --knowledge; leave them out")
+    plan = make_plan(setup.task, options.all_seeds, setup.parts(options.out or ERRANDS), basic_folder=options.basic)
+    run_study(plan, options, lambda _: tell(plan))

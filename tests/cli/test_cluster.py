@@ -178,7 +178,7 @@ class TwoWorkers:
         return OneFuture({JOB.file: self._result})
 
 
-JOB = Job(results=Results(Path("made")), seed=3, stem="one")
+JOB = Job(results=Results(Path("made")), seed=3, stem="one-3", name="one, seed 3")
 OWN, OTHER = "tls://127.0.0.1:1", "tls://127.0.0.1:2"
 
 

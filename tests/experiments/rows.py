@@ -1,11 +1,13 @@
 """Stored rows of drives and lessons, written by hand."""
 
+from collections.abc import Iterable
 from typing import Any
 
 from kurt2rt.core.task_settings import SuccessSettings
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict
 from kurt2rt.experiments.lockstep.lesson import LessonCounts
 from kurt2rt.experiments.study.provenance import Provenance
+from kurt2rt.experiments.study.table import Table
 
 MADE_OF = Provenance(task="t", robot="r", worlds="w", source="s", versions="Python 3")
 PASSED, FAILED, NOT_JUDGED = ExamVerdict.PASSED, ExamVerdict.FAILED, ExamVerdict.NOT_JUDGED
@@ -30,6 +32,16 @@ def row(world: str = "a", verdict: ExamVerdict = PASSED, **more: Any) -> DriveRo
         "trail": ((1.0, 1.0), (1.1, 1.0), (1.2, 1.1)),
     }
     return DriveRow.model_validate({**fields, **more})
+
+
+def titled(tables: Iterable[Table], title: str) -> Table:
+    """Return the first table whose title begins so."""
+    return next(each for each in tables if each.title.startswith(title))
+
+
+def cells(table: Table, place: int = 0) -> dict[str, str]:
+    """Return a row of a table by the names of its columns."""
+    return dict(zip(table.columns, table.rows[place], strict=True))
 
 
 def judged(teachers_laps: float = 9.0, **more: Any) -> DriveRow:

@@ -7,10 +7,9 @@ from kurt2rt.experiments.navigation.tables import all_tables as navigation_table
 from kurt2rt.experiments.paper.tables import paper_targets_table
 from kurt2rt.experiments.phases.steps import ASKS
 from kurt2rt.experiments.phases.tables import phases_targets_table, words_of_controls
-from kurt2rt.experiments.route.tables import all_tables as route_tables
 from kurt2rt.experiments.study.exam_tables import verdict_text
 from kurt2rt.experiments.study.targets import reasons_against_judging
-from kurt2rt.experiments.transfer.tables import all_tables as transfer_tables
+from kurt2rt.experiments.transfer import all_tables as transfer_tables
 from tests.experiments.navigation import test_tables as navigation
 from tests.experiments.navigation.test_goals import settings
 from tests.experiments.paper import test_tables as paper
@@ -28,7 +27,7 @@ def targets() -> Iterator[tuple[str, str]]:
     for label, table in (
         ("paper", paper_targets_table([streets, walls], "targets")),
         ("phases", phases_targets_table(study(2), [])),
-        ("route", next(route_tables(route.study([route.outcome(seed) for seed in range(100, 120)])))),
+        ("route", route.study([route.outcome(seed) for seed in range(100, 120)])[0]),
         ("errands", next(navigation_tables([navigation.robot(1, *navigation.GOOD)], settings()))),
         ("transfer", next(transfer_tables(transfer.robots(*[transfer.RIGHT_AT_ONCE] * 20)))),
     ):

@@ -20,8 +20,9 @@ from kurt2rt.experiments.lockstep.engine import (
 from kurt2rt.experiments.lockstep.exam import ExamSetup
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, parse_break
 from kurt2rt.experiments.study.bus_witness import BusWitnessJob
-from kurt2rt.experiments.study.jobs import SEED, JobParts, Outcome, StudyJob, require_places, world_of
+from kurt2rt.experiments.study.jobs import SEED, JobParts, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash
+from kurt2rt.experiments.study.results import Outcome
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.journal.loading import read_lessons
 
@@ -119,25 +120,12 @@ class Extent(NamedTuple):
 
 
 class Certified(NamedTuple):
-    """Task that is certified, and its runs."""
+    """Task and knowledge that are certified, and the runs."""
 
     task: TaskSettings
+    knowledge: Path
     extent: Extent
     runs: tuple[Run, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Certificate:
-    """Drives of all runs of a certificate, from which its tables and report are made."""
-
-    plan: StudyPlan[Certified]
-    drives: tuple[DriveRow, ...]
-    """One for each run of the plan, in order."""
-
-    @property
-    def compared(self) -> int:
-        """Number of runs that the batch and the CAN bus drove, with equal results."""
-        return len(self.plan.of(BusWitnessJob))
 
 
 def make_plan(task: TaskSettings, knowledge: Path, extent: Extent, parts: JobParts) -> StudyPlan[Certified]:
@@ -183,16 +171,16 @@ def make_plan(task: TaskSettings, knowledge: Path, extent: Extent, parts: JobPar
     blocks = [block(in_batch[at : at + step], Engine.COMPILED, BATCH_GAIN) for at in range(0, len(in_batch), step)]
     alone = [block((run,), Engine.CAN) for run in runs if run.broken or extent.engine is Engine.CAN]
     chosen = choose_witnesses(in_batch, f"{len(runs)} runs from {extent.first}")
-    witnesses = [BusWitnessJob.witness_of(replace(block((run,), Engine.COMPILED), wave=0)) for run in chosen]
+    witnesses = tuple(BusWitnessJob.witness_of(replace(block((run,), Engine.COMPILED), wave=0)) for run in chosen)
     numbers = tuple(run.number for run in runs)
-    return StudyPlan(Certified(task, extent, runs), numbers, (*witnesses, *blocks, *alone))
+    return StudyPlan(Certified(task, knowledge, extent, runs), numbers, (*blocks, *alone), witnesses)
 
 
-def read_certificate(plan: StudyPlan[Certified]) -> Certificate:
-    """Read the results of all jobs of the plan. Raises StudyError if one is missing or damaged."""
+def read_drives(plan: StudyPlan[Certified]) -> tuple[DriveRow, ...]:
+    """Return the drive of each run in order. Raises StudyError if a result is missing or damaged."""
     outcomes = (job.results.read(job, BlockOutcome) for job in plan.of(BlockJob))
     drives = {each.seed: each for outcome in outcomes for each in outcome.drives}
-    return Certificate(plan, tuple(drives[number] for number in plan.seeds))
+    return tuple(drives[number] for number in plan.seeds)
 
 
 def picture_jobs(plan: StudyPlan[Certified], runs: Iterable[DriveRow]) -> list[BlockJob]:

@@ -1,20 +1,20 @@
 """Summary, tables, pictures and report of a certificate: probabilities and rates with their 95 % intervals."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+import shlex
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import NamedTuple
 
-from kurt2rt.experiments.certify.study import BlockJob, Certificate
-from kurt2rt.experiments.lockstep.drive_row import DriveRow, label_of
-from kurt2rt.experiments.lockstep.engine import Engine
+from kurt2rt.experiments.certify.study import BlockJob, Certified, read_drives, read_pictures
+from kurt2rt.experiments.lockstep.drive_row import PLACES, DriveRow, label_of
 from kurt2rt.experiments.lockstep.trails import legend_below
+from kurt2rt.experiments.study.exam_tables import WORLD
 from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of, save
 from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of, wilson_interval
 from kurt2rt.experiments.study.report import Section, write_report
-from kurt2rt.experiments.study.table import Table, collisions_text, table_of, to_text
-from simbridge.contracts.simulation import SimulationFactory
+from kurt2rt.experiments.study.study_plan import StudyPlan
+from kurt2rt.experiments.study.table import Column, Table, Told, collisions_text, rate_text, table_of, to_text
 
 ALL = "all"
 """Name of the summary of all places, with working sensors."""
@@ -22,6 +22,10 @@ BROKEN = "a sensor breaks"
 """Name of the summary of all runs with a broken sensor."""
 _MOST_GROUPS = 200
 """Groups of runs that an interval of clustered events is bootstrapped over; each run by itself needs 1 GB."""
+
+
+_LEFT_OUT = {"verdict", "unit", "progress", "least_progress", "action_changes_per_s", "findings", "teacher", *PLACES}
+"""Fields of a run that a certificate does not measure."""
 
 
 class Share(NamedTuple):
@@ -35,7 +39,7 @@ class Share(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class PlaceSummary:
-    """Runs in the worlds of one place."""
+    """Runs in the worlds of one place, as JSON and tables tell them."""
 
     place: str
     runs: int
@@ -57,22 +61,17 @@ class PlaceSummary:
     m_per_minute: float
 
 
-def summarise(certificate: Certificate) -> Iterator[PlaceSummary]:
+def summarise(plan: StudyPlan[Certified], drives: Sequence[DriveRow]) -> Iterator[PlaceSummary]:
     """Yield the summary of each place that was drawn and, if there are several places, of all runs.
 
-    Runs with a broken sensor have a summary of their own.
+    Runs with a broken sensor have a summary of their own. `drives`: of all runs, in order.
     """
-    extent, runs = certificate.plan.about.extent, certificate.plan.about.runs
-    pairs = list(zip(runs, certificate.drives, strict=True))
+    pairs = list(zip(plan.about.runs, drives, strict=True))
     working = [(run.place, drive) for run, drive in pairs if not run.broken]
     broken = [drive for run, drive in pairs if run.broken]
-    for place in extent.places:
-        if drives := [drive for where, drive in working if where == place]:
-            yield summarise_runs(place, drives)
-    if len(extent.places) > 1 and working:
-        yield summarise_runs(ALL, [drive for _, drive in working])
-    if broken:
-        yield summarise_runs(BROKEN, broken)
+    by_place = [(place, [drive for where, drive in working if where == place]) for place in plan.about.extent.places]
+    of_all = [(ALL, [drive for _, drive in working])] if len(by_place) > 1 else []
+    return (summarise_runs(place, runs) for place, runs in (*by_place, *of_all, (BROKEN, broken)) if runs)
 
 
 def summarise_runs(place: str, runs: Sequence[DriveRow]) -> PlaceSummary:
@@ -108,7 +107,7 @@ def is_clean(run: DriveRow) -> bool:
     return not (run.failed or run.questions)
 
 
-def worst_runs(drives: Sequence[DriveRow], count: int) -> list[DriveRow]:
+def worst_of(drives: Sequence[DriveRow], count: int) -> list[DriveRow]:
     """Return so many runs at most: those with most collisions, then those stopped, stuck or asking soonest.
 
     Runs without any of these are left out.
@@ -127,105 +126,95 @@ def _clustered(counts: Sequence[int], hours: Sequence[float]) -> Rate:
     return rate_of([sum(counts[i : i + size]) for i in starts], [sum(hours[i : i + size]) for i in starts])
 
 
-def all_tables(certificate: Certificate, worst: Sequence[DriveRow]) -> Iterator[Table]:
+def all_tables(
+    plan: StudyPlan[Certified], summaries: Sequence[PlaceSummary], worst: Sequence[DriveRow]
+) -> Iterator[Table]:
     """Yield all tables: probabilities, rates and, if there are any, the worst runs."""
-    summaries = list(summarise(certificate))
-    yield probability_table(certificate, summaries)
-    yield rate_table(summaries)
-    if worst:
-        yield worst_table(certificate, worst)
 
+    def chance(name: str) -> Callable[[PlaceSummary], str]:
+        def cell(each: PlaceSummary) -> str:
+            found: Share = getattr(each, name)
+            return f"{found.value:.2%} ({to_text(found[2:], '.2%')})"
 
-def probability_table(certificate: Certificate, summaries: Sequence[PlaceSummary]) -> Table:
-    """Return the probability of each event within one run, by place."""
-    task = certificate.plan.about.task
-    return table_of(
-        f"Probability within {task.exam.duration_s:g} s of {task.name}",
+        return cell
+
+    def in_an_hour(name: str) -> Callable[[PlaceSummary], str]:
+        def cell(each: PlaceSummary) -> str:
+            rate: Rate = getattr(each, name)
+            return f"{rate.value:.2f}" if math.isinf(rate.high) else rate_text(rate)
+
+        return cell
+
+    def seconds(time_s: float) -> str:
+        return f"{time_s:.1f}" if time_s else ""
+
+    place: Column = ("world", lambda each: label_of(each.place))
+    yield table_of(
+        f"Probability within {plan.about.task.exam.duration_s:g} s of {plan.about.task.name}",
         summaries,
-        ("world", lambda each: label_of(each.place)),
+        place,
         ("runs", lambda each: each.runs),
-        ("a collision", lambda each: _format_share(each.collided)),
-        ("stuck", lambda each: _format_share(each.stuck)),
-        ("a question", lambda each: _format_share(each.asked)),
-        ("stopped by a watch", lambda each: _format_share(each.stopped)),
-        ("none of these", lambda each: _format_share(each.clean)),
+        ("a collision", chance("collided")),
+        ("stuck", chance("stuck")),
+        ("a question", chance("asked")),
+        ("stopped by a watch", chance("stopped")),
+        ("none of these", chance("clean")),
         note="With 95 % intervals (Wilson). Each run is another robot: gains and turns of its sensors, their noise, "
         "the slip of its wheels, start and world follow from the run's number. A run ends where the robot is stuck or "
-        f"stopped. {_format_witnesses(certificate)}",
+        f"stopped. {_format_witnesses(plan)}",
     )
-
-
-def rate_table(summaries: Sequence[PlaceSummary]) -> Table:
-    """Return events in an hour, the share of time in unknown situations, and the speed, by place."""
-    return table_of(
+    yield table_of(
         "In an hour of driving",
         summaries,
-        ("world", lambda each: label_of(each.place)),
+        place,
         ("hours", lambda each: f"{each.hours:.1f}"),
-        ("collisions", lambda each: _format_rate(each.collisions_per_hour)),
-        ("first question", lambda each: _format_rate(each.first_questions_per_hour)),
-        ("all questions", lambda each: _format_rate(each.questions_per_hour)),
+        ("collisions", in_an_hour("collisions_per_hour")),
+        ("first question", in_an_hour("first_questions_per_hour")),
+        ("all questions", in_an_hour("questions_per_hour")),
         ("time in the unknown", lambda each: f"{each.unknown_share:.3%}"),
         ("m in a minute", lambda each: f"{each.m_per_minute:.1f}"),
         note="With 95 % intervals: Poisson's exact one, and for events that come in clusters the wider of it and a "
         "bootstrap. No teacher answers: a robot that asks stands until its noise lets it drive on. First question: "
         "questions in an hour of a robot that has not asked yet.",
     )
+    broken = {run.number: run.broken for run in plan.about.runs}
+    if worst:
+        yield table_of(
+            "Worst runs",
+            worst,
+            ("run", lambda each: each.seed),
+            WORLD,
+            ("broken sensor", lambda each: broken[each.seed]),
+            ("collisions", lambda each: each.collisions),
+            ("first after s", lambda each: seconds(each.first_collision_s)),
+            ("first question after s", lambda each: seconds(each.first_question_s)),
+            ("stuck after s", lambda each: seconds(each.duration_s if each.stuck else 0.0)),
+            ("stopped", lambda each: each.alarm),
+            words=3,
+            note="Most collisions first. The number of a run is its seed.",
+        )
 
 
-def worst_table(certificate: Certificate, worst: Sequence[DriveRow]) -> Table:
-    """Return one row for each of the worst runs."""
-    broken = {run.number: run.broken for run in certificate.plan.about.runs}
-
-    def format_time(time_s: float) -> str:
-        return f"{time_s:.1f}" if time_s else ""
-
-    return table_of(
-        "Worst runs",
-        worst,
-        ("run", lambda each: each.seed),
-        ("world", lambda each: label_of(each.world)),
-        ("broken sensor", lambda each: broken[each.seed]),
-        ("collisions", lambda each: each.collisions),
-        ("first after s", lambda each: format_time(each.first_collision_s)),
-        ("first question after s", lambda each: format_time(each.first_question_s)),
-        ("stuck after s", lambda each: format_time(each.duration_s if each.stuck else 0.0)),
-        ("stopped", lambda each: each.alarm),
-        words=3,
-        note="Most collisions first. The number of a run is its seed.",
-    )
-
-
-def _format_witnesses(certificate: Certificate) -> str:
+def _format_witnesses(plan: StudyPlan[Certified]) -> str:
     """Return how many runs the batch and the CAN bus drove with equal outcomes, and how many the bus alone."""
-    alone = sum(job.engines.exams is Engine.CAN for job in certificate.plan.of(BlockJob))
-    if alone == len(certificate.drives):
+    alone = sum(not job.engines.in_batch for job in plan.jobs)
+    if alone == len(plan.about.runs):
         return "All runs were driven on the CAN bus."
     left = f"; {alone} with a broken sensor were driven there alone" if alone else ""
-    return f"{certificate.compared} runs were driven on the CAN bus too, with equal results{left}."
-
-
-def _format_rate(rate: Rate) -> str:
-    if math.isinf(rate.high):
-        return f"{rate.value:.2f}"
-    return f"{rate.value:.2f} ({to_text(rate[1:], '.2f')})"
-
-
-def _format_share(share: Share) -> str:
-    return f"{share.value:.2%} ({to_text(share[2:], '.2%')})"
+    return f"{len(plan.witnesses)} runs were driven on the CAN bus too, with equal results{left}."
 
 
 def draw_worst(
-    drives: Sequence[DriveRow], commands: Sequence[str], factory: SimulationFactory, folder: Path
+    drives: Iterable[DriveRow], commands: Sequence[str], plan: StudyPlan[Certified]
 ) -> Iterator[SavedFigure]:
-    """Draw each run into the folder and yield it: run-NUMBER.png.
+    """Draw each run into the folder of the results and yield it: run-NUMBER.png.
 
     `commands`: by which a user drives each run again. Raises OSError.
     """
     for drive, command in zip(drives, commands, strict=True):
-        path = folder / f"run-{drive.seed}.png"
+        path = plan.results.folder / f"run-{drive.seed}.png"
         figure, (axes,) = panels_of(1, 1, (5.6, 6.0))
-        draw_drive(axes, factory, drive)
+        draw_drive(axes, plan.jobs[0].factory, drive)
         axes.set_title(f"Run {drive.seed} in world {label_of(drive.world)}")
         legend_below(axes, columns=4)
         save(figure, path)
@@ -234,21 +223,43 @@ def draw_worst(
         yield SavedFigure(path, f"Run {drive.seed}: {', '.join(filter(None, parts))}", command)
 
 
-def write_certificate(
-    certificate: Certificate, tables: Sequence[Table], pictures: Sequence[SavedFigure], command: str, path: Path
-) -> None:
-    """Write the report of a certificate as an HTML page to `path`. Raises OSError.
+def tell(
+    plan: StudyPlan[Certified],
+    worst: Sequence[DriveRow],
+    again: Sequence[BlockJob],
+    words: Sequence[str],
+    command: str,
+) -> Told:
+    """Write pictures and report into the folder of the results; return the tables.
 
-    `command`: typed words, without those that belong to the machine alone.
+    Args:
+        plan: of the study, whose jobs are done.
+        worst: runs to show.
+        again: jobs that drove them again for their pictures.
+        words: options by which `kurt2rt exam` drives a run as these were driven.
+        command: typed words of the study, without those that belong to the machine alone.
+
+    Raises:
+        BatchDiffersError: a run had another outcome when it was driven again.
+        StudyError, OSError.
     """
-    task, _, runs = certificate.plan.about
+    (task, knowledge, _, runs), path = plan.about, plan.results.folder / "report.html"
+    broken = {run.number: run.broken for run in runs}
+    summaries = list(summarise(plan, read_drives(plan)))
+    tables = list(all_tables(plan, summaries, worst))
+    commands = []
+    for run in worst:
+        sensor = ["--broken-sensor", broken[run.seed]] if broken[run.seed] else []
+        exam = ["kurt2rt", "exam", str(knowledge), "--seed", str(run.seed), "--world", run.world]
+        commands.append(shlex.join([*exam, *sensor, *words]))
+    pictures = list(draw_worst(read_pictures(again, worst), commands, plan))
     told = (
         f"A taught robot drove {task.exam.duration_s:g} s in simulation, without a teacher, once for each number from "
         f"{runs[0].number} to {runs[-1].number}. A number makes the robot with the spread of its sensors, its noise "
         "and slip, its start and its world. The simulated robot stands in for a real one: slopes, carpets, people and "
         "sunlight are not in it."
     )
-    again = (
+    driven_again = (
         "Each was driven again on the CAN bus, with the same outcome. The line below a picture is the command that "
         "shows it again."
     )
@@ -257,10 +268,17 @@ def write_certificate(
         f"KURT2: certificate of a robot that was taught {task.name}",
         (
             Section("", (told,), tables),
-            *([Section("Worst runs", (again,), pictures=pictures)] if pictures else ()),
+            *([Section("Worst runs", (driven_again,), pictures=pictures)] if pictures else ()),
             Section("How this was made"),
         ),
         command=command,
         footer="{versions}. Source of what drives and simulates: {source}. The same command with the same versions "
         "gives the same numbers on the same kind of machine.",
     )
+    found = [
+        {**each.model_dump(exclude=_LEFT_OUT), "broken": broken[each.seed], "command": word}
+        for each, word in zip(worst, commands, strict=True)
+    ]
+    data = {"knowledge": knowledge, "task": task.name, "seconds": task.exam.duration_s, "places": summaries}
+    data |= {"compared": len(plan.witnesses), "worst": found}
+    return Told(tables, (), {"report": path}, commands, data)

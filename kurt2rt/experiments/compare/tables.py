@@ -1,7 +1,6 @@
 """Tables and figure of a comparison."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import cycle
 from math import sqrt
 from pathlib import Path
@@ -12,55 +11,59 @@ from matplotlib.figure import Figure
 from scipy.stats import binomtest
 from scipy.stats import t as students_t
 
-from kurt2rt.experiments.compare.pupil import SHIPPED, Pupil
-from kurt2rt.experiments.compare.study import Compared, PupilJob, PupilOutcome
+from kurt2rt.experiments.compare.study import SHIPPED, Compared, Pupil, PupilJob, PupilOutcome
 from kurt2rt.experiments.study.figures import save
 from kurt2rt.experiments.study.intervals import wilson_interval
-from kurt2rt.experiments.study.study_plan import Group, StudyPlan, read_groups
-from kurt2rt.experiments.study.table import Table, of_text, table_of
+from kurt2rt.experiments.study.study_plan import Group, StudyPlan, group_by, read_groups
+from kurt2rt.experiments.study.table import Column, Table, Told, middle, of_text, table_of, total
+from kurt2rt.experiments.study.targets import reasons_against_judging
 
 _STYLES = ("-", "--", ":", "-.")
 Row = Group[tuple[str, Pupil], PupilOutcome]
 """Robots that are one pupil in one task."""
 
 
-@dataclass(frozen=True, slots=True)
-class Comparison:
-    """Plan and outcomes of a comparison."""
-
-    plan: StudyPlan[Compared]
-    rows: tuple[Row, ...]
-
-    def of_task(self, task: str) -> tuple[Row, tuple[Row, ...]]:
-        """Return the row of the RLA system as shipped, which is the first of each task, and the task's other rows.
-
-        `task`: name of a task of the plan; ValueError for any other.
-        """
-        shipped, *others = (row for row in self.rows if row.of[0] == task)
-        return shipped, tuple(others)
+def tell(plan: StudyPlan[Compared]) -> Told:
+    """Draw the curves into the folder of the results; return the tables. Raises StudyError, OSError."""
+    rows, figure = read_rows(plan), plan.results.folder / "compare.png"
+    draw_curves(rows, plan.about, figure)
+    return Told(list(all_tables(rows, plan)), list(reasons_against_judging(plan.seeds)), {"figure": figure})
 
 
-def read_comparison(plan: StudyPlan[Compared]) -> Comparison:
-    """Read the results of all jobs of the plan. Raises StudyError if a result is missing or damaged."""
-    return Comparison(plan, read_groups(plan.of(PupilJob), lambda job: (job.task.name, job.pupil), PupilOutcome))
+def read_rows(plan: StudyPlan[Compared]) -> tuple[Row, ...]:
+    """Return the results of all jobs by task and pupil. Raises StudyError if a result is missing or damaged."""
+    return read_groups(plan.of(PupilJob), lambda job: (job.task.name, job.pupil), PupilOutcome)
 
 
-def judged_of(row: Row) -> tuple[PupilOutcome, ...]:
+def _judged_of(row: Row) -> tuple[PupilOutcome, ...]:
     """Return the outcomes of the robots that the policy's own drives can judge."""
-    return tuple(each for each in row.outcomes if each.checkpoints[-1].judged)
+    return tuple(each for each in row.rows if each.end.judged)
 
 
 def passed_at(row: Row, place: int) -> int:
     """Return the number of judged robots that pass at the checkpoint of an index."""
-    return sum(each.checkpoints[place].passed for each in judged_of(row))
+    return sum(each.checkpoints[place].passed for each in _judged_of(row))
 
 
-def all_tables(comparison: Comparison) -> Iterator[Table]:
+_TASK: tuple[Column, ...] = (("task", lambda row: row.of[0]), ("learner", lambda row: row.of[1].title))
+
+
+def all_tables(rows: Sequence[Row], plan: StudyPlan[Compared]) -> Iterator[Table]:
     """Yield all tables: success by presses, pairs of robots, the effort, and failures if there are any."""
-    yield success_table(comparison)
-    yield paired_table(comparison)
-    yield effort_table(comparison)
-    failures = [(row, each) for row in comparison.rows for each in row.outcomes if each.failure]
+    yield _success_table(rows, plan.about)
+    yield paired_table(rows)
+    yield table_of(
+        "Effort, and safety while it is taught",
+        rows,
+        *_TASK,
+        middle("presses", "lesson.presses", ".0f"),
+        middle("questions", "lesson.asks", ".0f"),
+        middle("corrections", "lesson.corrections", ".0f"),
+        *(total(name, f"lesson.{name}") for name in ("collisions", "alarms", "rescues")),
+        words=2,
+        note=f"Medians of {len(plan.seeds)} robots; collisions, alarms and rescues of all.",
+    )
+    failures = [(row, each) for row in rows for each in row.rows if each.failure]
     if failures:
         yield table_of(
             "Failures of learners",
@@ -73,18 +76,17 @@ def all_tables(comparison: Comparison) -> Iterator[Table]:
         )
 
 
-def success_table(comparison: Comparison) -> Table:
-    """Return the robots that pass in all worlds, by presses, with 95 % intervals."""
-    tasks, after = comparison.plan.about
-    rows = []
-    for row in comparison.rows:
-        passed = (passed_at(row, place) for place in range(len(after) + 1))
-        rows.append((*_heading(row), *(of_text(count, len(judged_of(row)), interval=True) for count in passed)))
-    lasting = ", ".join(f"{task.name} {task.exam.duration_s:.0f} s" for task in tasks)
-    return Table(
+def _success_table(rows: Sequence[Row], about: Compared) -> Table:
+    def after(heading: str, place: int) -> Column:
+        return heading, lambda row: of_text(passed_at(row, place), len(_judged_of(row)), interval=True)
+
+    lasting = ", ".join(f"{task.name} {task.exam.duration_s:.0f} s" for task in about.tasks)
+    return table_of(
         "Robots that pass, by presses",
-        ("task", "learner", *(f"after {presses}" for presses in after), "at the end"),
-        tuple(rows),
+        rows,
+        *_TASK,
+        *(after(f"after {presses}", place) for place, presses in enumerate(about.after)),
+        after("at the end", -1),
         words=2,
         note=f"A robot passes if it passes in every world of the task's exam, without a teacher ({lasting}). The drive "
         "of the teacher's policy from the same start is the measure. A world in which it fails is left out. With 95 % "
@@ -94,49 +96,28 @@ def success_table(comparison: Comparison) -> Table:
     )
 
 
-def paired_table(comparison: Comparison) -> Table:
+def paired_table(rows: Sequence[Row]) -> Table:
     """Return the comparison of each learner with the RLA system, robot by robot, at the end of the lessons."""
-    rows = []
-    for task in comparison.plan.about.tasks:
-        shipped, others = comparison.of_task(task.name)
-        pairs = [pairs_of(shipped.outcomes, row.outcomes) for row in others]
+    cells: list[tuple[Row, tuple[int, int], float, float, str]] = []
+    for _, (shipped, *others) in group_by(rows, lambda row: row.of[0]):
+        pairs = [pairs_of(shipped.rows, row.rows) for row in others]
         p_values = [mcnemar_p(*each) for each in pairs]
-        for row, pair, p_value, corrected in zip(others, pairs, p_values, holm(p_values), strict=True):
-            saved = _saving_text(shipped.outcomes, row.outcomes)
-            rows.append((*_heading(row), *map(str, pair), f"{p_value:.3f}", f"{corrected:.3f}", saved))
-    return Table(
+        saved = [_saving_text(shipped.rows, row.rows) for row in others]
+        cells += zip(others, pairs, p_values, holm(p_values), saved, strict=True)
+    return table_of(
         "Compared with the RLA system as shipped, robot by robot",
-        (
-            *("task", "learner", "only the RLA system passes", "only the learner passes", "p", "p by Holm"),
-            "presses fewer, mean (95 %)",
-        ),
-        tuple(rows),
+        cells,
+        ("task", lambda each: each[0].of[0]),
+        ("learner", lambda each: each[0].of[1].title),
+        ("only the RLA system passes", lambda each: each[1][0]),
+        ("only the learner passes", lambda each: each[1][1]),
+        ("p", lambda each: f"{each[2]:.3f}"),
+        ("p by Holm", lambda each: f"{each[3]:.3f}"),
+        ("presses fewer, mean (95 %)", lambda each: each[4]),
         words=2,
         note="At the end of the lessons, on the same robots. p: McNemar's exact test, two-sided; by Holm: corrected "
         "for the number of rows of the task. Presses fewer than the RLA system's: mean of the differences robot by "
         "robot, with Student's interval; below 0 the learner takes more.",
-    )
-
-
-def effort_table(comparison: Comparison) -> Table:
-    """Return the effort of the teacher, and collisions and alarms while the robots were taught."""
-
-    def middle(row: Row, name: str) -> str:
-        return f"{median(getattr(each.lesson, name) for each in row.outcomes):.0f}"
-
-    return table_of(
-        "Effort, and safety while it is taught",
-        comparison.rows,
-        ("task", lambda row: row.of[0]),
-        ("learner", lambda row: row.of[1].title),
-        ("presses", lambda row: middle(row, "presses")),
-        ("questions", lambda row: middle(row, "asks")),
-        ("corrections", lambda row: middle(row, "corrections")),
-        ("collisions", lambda row: sum(each.lesson.collisions for each in row.outcomes)),
-        ("alarms", lambda row: sum(each.lesson.alarms for each in row.outcomes)),
-        ("rescues", lambda row: sum(each.lesson.rescues for each in row.outcomes)),
-        words=2,
-        note=f"Medians of {len(comparison.plan.seeds)} robots; collisions, alarms and rescues of all.",
     )
 
 
@@ -145,7 +126,7 @@ def pairs_of(first: Sequence[PupilOutcome], second: Sequence[PupilOutcome]) -> t
 
     Robots of equal seeds are compared at the end of their lessons; those that are not judged do not count.
     """
-    ends = [(one.checkpoints[-1], other.checkpoints[-1]) for one, other in zip(first, second, strict=True)]
+    ends = [(one.end, other.end) for one, other in zip(first, second, strict=True)]
     judged = [(one.passed, other.passed) for one, other in ends if one.judged and other.judged]
     return judged.count((True, False)), judged.count((False, True))
 
@@ -175,23 +156,19 @@ def _saving_text(first: Sequence[PupilOutcome], second: Sequence[PupilOutcome]) 
     return f"{middle:.1f} ({middle - half:.1f} to {middle + half:.1f})"
 
 
-def _heading(row: Row) -> tuple[str, str]:
-    return row.of[0], row.of[1].title
-
-
-def draw_curves(comparison: Comparison, path: Path) -> None:
+def draw_curves(rows: Sequence[Row], about: Compared, path: Path) -> None:
     """Draw a panel for each task, with a line for each pupil, as a PNG to `path`. Raises OSError.
 
     The last point of a line is the end of the lesson. The band is the 95 % interval of the RLA system.
     """
-    tasks = comparison.plan.about.tasks
+    tasks = about.tasks
     figure = Figure(figsize=(9.6, 4.8 * len(tasks)), layout="constrained")
     panels = figure.subplots(len(tasks), 1, squeeze=False).flatten().tolist()
     for axes, task in zip(panels, tasks, strict=True):
         styles = cycle(_STYLES)
-        for row in comparison.rows:
-            if row.of[0] == task.name and judged_of(row):
-                _draw(axes, comparison.plan.about.after, row, next(styles))
+        for row in rows:
+            if row.of[0] == task.name and _judged_of(row):
+                _draw(axes, about.after, row, next(styles))
         axes.set_ylim(-0.03, 1.03)
         axes.grid(alpha=0.3)
         axes.set_title(task.name, loc="left")
@@ -203,9 +180,9 @@ def draw_curves(comparison: Comparison, path: Path) -> None:
 
 
 def _draw(axes: Axes, after: tuple[int, ...], row: Row, style: str) -> None:
-    robots, pupil = len(judged_of(row)), row.of[1]
+    robots, pupil = len(_judged_of(row)), row.of[1]
     shipped = pupil.name == SHIPPED
-    end = median(each.lesson.presses for each in row.outcomes)
+    end = median(each.lesson.presses for each in row.rows)
     # A median robot that never got so many presses has its point of the end there.
     reached = [presses for presses in after if presses < end]
     counts = [passed_at(row, place) for place in (*range(len(reached)), len(after))]

@@ -11,6 +11,7 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import PlainSerializer, PlainValidator
+from scipy.stats import mannwhitneyu
 
 from config.settings import Settings
 
@@ -86,14 +87,9 @@ def wrong_ticks(log: DriveLog) -> Flags:
 
 def area_under_curve(scores: Scores, wrong: Flags) -> float:
     """Return the area under the ROC curve of scores (n,); NaN without wrong or right ticks."""
-    positives = int(wrong.sum())
-    negatives = len(wrong) - positives
-    if not positives or not negatives:
+    if not wrong.any() or wrong.all():
         return float("nan")
-    _, places, counts = np.unique(scores, return_inverse=True, return_counts=True)
-    ranks = np.cumsum(counts) - (counts - 1) / 2
-    above = float(ranks[places][wrong].sum()) - positives * (positives + 1) / 2
-    return above / (positives * negatives)
+    return float(mannwhitneyu(scores[wrong], scores[~wrong]).statistic) / (int(wrong.sum()) * int((~wrong).sum()))
 
 
 def question_ticks(scores: Scores, driving: Flags, threshold: float) -> list[int]:

@@ -1,6 +1,6 @@
 """Study of doubt: jobs of one robot in one world, which only tells its doubt, or stands; and their tables."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, NamedTuple
@@ -10,10 +10,11 @@ from kurt2rt.experiments.doubt.drive import DoubtResponse, DoubtSetup, drive, wi
 from kurt2rt.experiments.doubt.measures import DriveLog, judge_score, threshold_for
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.study.intervals import rate_of
-from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places, world_of
+from kurt2rt.experiments.study.jobs import JobParts, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints
-from kurt2rt.experiments.study.study_plan import StudyPlan, read_groups
-from kurt2rt.experiments.study.table import Table, of_text, table_of, to_text
+from kurt2rt.experiments.study.results import Outcome
+from kurt2rt.experiments.study.study_plan import Group, StudyPlan, read_groups
+from kurt2rt.experiments.study.table import Table, Told, of_text, rate_text, table_of
 from kurt2rt.knowledge.journal.loading import read_lessons
 
 TICKS_PER_MINUTE = 6000
@@ -91,17 +92,16 @@ def make_plan(about: DoubtDrives, seeds: Sequence[int], taught: Path, parts: Job
     return StudyPlan(about, tuple(seeds), tuple(jobs))
 
 
-def all_tables(plan: StudyPlan[DoubtDrives]) -> Iterator[Table]:
-    """Yield the quality of doubt that is only told, if it is driven, and the collisions by response.
+def tell(plan: StudyPlan[DoubtDrives]) -> Told:
+    """Return the quality of doubt that is only told, if it is driven, and the collisions by response.
 
     Raises StudyError if a result is missing or damaged.
     """
     found = read_groups(plan.of(DoubtJob), lambda job: job.setup.response, DoubtOutcome)
-    groups = {each.of: [outcome.log for outcome in each.outcomes] for each in found}
+    groups = [Group(each.of, tuple(outcome.log for outcome in each.rows)) for each in found]
     doubt = plan.about.task.learning.doubt
-    if DoubtResponse.TELLS in groups and doubt is not None:
-        yield score_table(groups[DoubtResponse.TELLS], doubt.threshold)
-    yield collision_table(groups, plan.about.set_down_after_s)
+    tables = [score_table(each.rows, doubt.threshold) for each in groups if doubt and each.of is DoubtResponse.TELLS]
+    return Told([*tables, collision_table(groups, plan.about.set_down_after_s)])
 
 
 def score_table(logs: Sequence[DriveLog], threshold: float) -> Table:
@@ -128,37 +128,33 @@ def score_table(logs: Sequence[DriveLog], threshold: float) -> Table:
     )
 
 
-def _in_100_minutes(logs: Sequence[DriveLog]) -> str:
-    """Return the collisions in 100 minutes with their 95 % interval, over the drives."""
-    rate = rate_of([len(log.collisions) for log in logs], [len(log.doubt) / TICKS_PER_MINUTE / 100 for log in logs])
-    return f"{rate.value:.1f} ({to_text(rate[1:], '.1f')})"
-
-
-def collision_table(logs_by_response: Mapping[DoubtResponse, Sequence[DriveLog]], set_down_after_s: float) -> Table:
+def collision_table(groups: Sequence[Group[DoubtResponse, DriveLog]], set_down_after_s: float) -> Table:
     """Return the collisions of drives by the robot's response to its doubt; all have as many drives.
 
     `set_down_after_s`: time after which a robot that asks was set down at another start; 0: it was not.
     """
 
-    def minutes(logs: Sequence[DriveLog]) -> float:
-        return max(sum(len(log.doubt) for log in logs) / TICKS_PER_MINUTE, 1e-9)
+    def minutes(each: Group[DoubtResponse, DriveLog], *, driven: bool = False) -> float:
+        ticks = sum(float(log.driving.sum()) if driven else len(log.doubt) for log in each.rows)
+        return max(ticks / TICKS_PER_MINUTE, 1e-9)
 
-    def driven(logs: Sequence[DriveLog]) -> float:
-        return sum(float(log.driving.sum()) for log in logs) / TICKS_PER_MINUTE
+    def in_100_minutes(each: Group[DoubtResponse, DriveLog]) -> str:
+        hundreds = [len(log.doubt) / TICKS_PER_MINUTE / 100 for log in each.rows]
+        return rate_text(rate_of([len(log.collisions) for log in each.rows], hundreds), ".1f")
 
-    def collisions(logs: Sequence[DriveLog]) -> int:
-        return sum(len(log.collisions) for log in logs)
+    def collisions(each: Group[DoubtResponse, DriveLog]) -> int:
+        return sum(len(log.collisions) for log in each.rows)
 
     return table_of(
-        f"Collisions without a teacher, {max(map(len, logs_by_response.values()), default=0)} drives each",
-        logs_by_response.items(),
-        ("doubt", lambda row: row[0].value),
-        ("collisions", lambda row: collisions(row[1])),
-        ("with things seen", lambda row: sum(sum(log.seen) for log in row[1])),
-        ("in 100 min (95 % interval)", lambda row: _in_100_minutes(row[1])),
-        ("in 100 driven min", lambda row: f"{100 * collisions(row[1]) / max(driven(row[1]), 1e-9):.1f}"),
-        ("time driven", lambda row: f"{100 * driven(row[1]) / minutes(row[1]):.0f} %"),
-        ("m in a minute", lambda row: f"{sum(log.travelled_m for log in row[1]) / minutes(row[1]):.1f}"),
+        f"Collisions without a teacher, {max((len(each.rows) for each in groups), default=0)} drives each",
+        groups,
+        ("doubt", lambda each: each.of.value),
+        ("collisions", collisions),
+        ("with things seen", lambda each: sum(sum(log.seen) for log in each.rows)),
+        ("in 100 min (95 % interval)", in_100_minutes),
+        ("in 100 driven min", lambda each: f"{100 * collisions(each) / minutes(each, driven=True):.1f}"),
+        ("time driven", lambda each: f"{100 * minutes(each, driven=True) / minutes(each):.0f} %"),
+        ("m in a minute", lambda each: f"{sum(log.travelled_m for log in each.rows) / minutes(each):.1f}"),
         note=f"A question that is not answered for {set_down_after_s:g} s sets the robot down at another start."
         if set_down_after_s
         else "A robot that asks stands for as long as its question lasts.",

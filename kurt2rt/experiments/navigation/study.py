@@ -14,12 +14,12 @@ from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.drive_row import Place, rounded_places
 from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
-from kurt2rt.experiments.navigation.exam import GoalOutcome, GoalsRun
-from kurt2rt.experiments.navigation.goals import choose_goals
+from kurt2rt.experiments.navigation.exam import GoalOutcome, GoalsRun, choose_goals
 from kurt2rt.experiments.navigation.guided_tour import TourCounts, guided_tour, navigation_settings, street_tracker
 from kurt2rt.experiments.route.study import basic_task_of, streets_of
-from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places
+from kurt2rt.experiments.study.jobs import JobParts, StudyJob, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints
+from kurt2rt.experiments.study.results import Outcome
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.journal.loading import copy_knowledge, read_lessons
 from kurt2rt.runtime import RuntimeOptions

@@ -7,12 +7,15 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from behaviors.metrics.errands import ErrandsSettings
+from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teacher_settings import SUPERHUMAN
 from kurt2rt.experiments.lockstep.trails import draw_trail
-from kurt2rt.experiments.navigation.study import ErrandsOutcome
+from kurt2rt.experiments.navigation.guided_tour import navigation_settings
+from kurt2rt.experiments.navigation.study import ErrandsOutcome, NavigationJob
 from kurt2rt.experiments.navigation.tour_guide import HOME
 from kurt2rt.experiments.study.figures import START, save
-from kurt2rt.experiments.study.table import Table, collisions_text, of_text, share_text, table_of
+from kurt2rt.experiments.study.study_plan import StudyPlan
+from kurt2rt.experiments.study.table import Table, Told, collisions_text, of_text, share_text, table_of
 from kurt2rt.experiments.study.targets import Verdict, needed_of, reasons_against_judging, targets_table
 from simbridge.contracts.simulation import SimulationFactory
 
@@ -20,6 +23,16 @@ SHARE = 18 / 20
 """Required ratio of goals reached by a way that is short enough, and of robots that reach this ratio."""
 _LED = "#b0b0b0"
 _BOX = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": _LED, "linewidth": 0.6}
+
+
+def tell(plan: StudyPlan[TaskSettings]) -> Told:
+    """Draw each robot into the folder of the results; return the tables. Raises StudyError, OSError."""
+    task, outcomes = plan.about, [job.results.read(job, ErrandsOutcome) for job in plan.of(NavigationJob)]
+    pictures = [plan.results.folder / f"{task.name}-{outcome.seed}.png" for outcome in outcomes]
+    for outcome, path in zip(outcomes, pictures, strict=True):
+        draw_errands(plan.jobs[0].factory, task.exam.worlds[0], outcome, path)
+    tables = list(all_tables(outcomes, navigation_settings(task), task.teaching.profile.name))
+    return Told(tables, (), {"pictures": plan.results.folder}, (), {"pictures": pictures})
 
 
 def all_tables(
@@ -32,8 +45,8 @@ def all_tables(
     reasons = list(reasons_against_judging([each.seed for each in outcomes]))
     found = [((), verdict) for verdict in verdicts(outcomes, metric)]
     yield targets_table(found, reasons, title="Errands: what was asked")
-    yield runs_table(outcomes, metric, teacher)
-    yield robots_table(outcomes, metric)
+    yield _runs_table(outcomes, metric, teacher)
+    yield _robots_table(outcomes, metric)
 
 
 def verdicts(runs: Sequence[ErrandsOutcome], metric: ErrandsSettings) -> Iterator[Verdict]:
@@ -51,11 +64,7 @@ def verdicts(runs: Sequence[ErrandsOutcome], metric: ErrandsSettings) -> Iterato
     yield Verdict("way to goals that were reached, mean", asked, f"{mean:.2f}", mean <= most)
 
 
-def runs_table(outcomes: Sequence[ErrandsOutcome], metric: ErrandsSettings, teacher: str) -> Table:
-    """Return the table of the drives of all robots.
-
-    `metric`: settings of the errands. `teacher`: name of the scripted teacher.
-    """
+def _runs_table(outcomes: Sequence[ErrandsOutcome], metric: ErrandsSettings, teacher: str) -> Table:
     errands = [each for run in outcomes for each in run.errands]
     good, detours = sum(run.good(metric.detour_at_most) for run in outcomes), [e.detour for e in errands if e.reached]
     led = [each.demonstrated for each in errands if each.demonstrated is not None]
@@ -77,8 +86,7 @@ def runs_table(outcomes: Sequence[ErrandsOutcome], metric: ErrandsSettings, teac
     )
 
 
-def robots_table(outcomes: Sequence[ErrandsOutcome], metric: ErrandsSettings) -> Table:
-    """Return the table of single robots, a row for each. `metric`: settings of the errands."""
+def _robots_table(outcomes: Sequence[ErrandsOutcome], metric: ErrandsSettings) -> Table:
 
     def missed(each: ErrandsOutcome) -> str:
         failed = (done for done in each.errands if not done.reached)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from kurt2rt.core.task_settings import PaperResult
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict, label_of
 from kurt2rt.experiments.lockstep.trails import legend_below
-from kurt2rt.experiments.paper.tables import GrowthStudy, PaperStudy
+from kurt2rt.experiments.paper.study import GrowthStudy, PaperStudy
 from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of, save
 from kurt2rt.experiments.study.table import collisions_text
 from simbridge.contracts.simulation import SimulationFactory
@@ -133,7 +133,7 @@ def draw_figures(study: PaperStudy, factory: SimulationFactory, folder: Path) ->
     draw_worlds(factory, paper.worlds, path)
     yield SavedFigure(path, "Fig. 6: the test worlds", "World A is the one that is taught in.")
     for each in shipped:
-        robot = each.outcomes[0]
+        robot = each.rows[0]
         drive = robot.drives[0]
         if each.of.settings.task == paper.eight:
             path = folder / "fig7.png"
@@ -146,7 +146,7 @@ def draw_figures(study: PaperStudy, factory: SimulationFactory, folder: Path) ->
                 "chosen.",
             )
     for each in shipped:
-        robot = each.outcomes[0]
+        robot = each.rows[0]
         path = folder / f"drive-{each.of.task.name}.png"
         own = [drive for drive in robot.drives if drive.world in each.of.task.exam.worlds]
         others = [drive for drive in robot.drives if drive not in own]

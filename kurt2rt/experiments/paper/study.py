@@ -12,10 +12,10 @@ from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.paper.settings import ExperimentSettings, Extent, PaperSettings
-from kurt2rt.experiments.study.jobs import CurriculumJob, JobParts, Outcome, StudyJob, curriculum_time_s
+from kurt2rt.experiments.study.jobs import CurriculumJob, ExaminedOutcome, JobParts, StudyJob, curriculum_time_s
 from kurt2rt.experiments.study.provenance import Fingerprints
-from kurt2rt.experiments.study.results import StudyError
-from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedEngine, StudyPlan
+from kurt2rt.experiments.study.results import Outcome, StudyError
+from kurt2rt.experiments.study.study_plan import EngineRequest, Group, StudyPlan, group_by, read_groups
 from kurt2rt.experiments.study.targets import ROBOTS
 
 Reading = Literal["shipped", "plain"]
@@ -73,7 +73,7 @@ def make_plan(
     parts: JobParts,
     *,
     tasks: Sequence[str] = (),
-    engine: RequestedEngine = ALL_ON_BUS,
+    engine: EngineRequest = EngineRequest.CAN,
 ) -> StudyPlan[PaperExtent]:
     """Check every task and world, and return the jobs.
 
@@ -175,3 +175,60 @@ def _require_tasks(chosen: Sequence[ExperimentSettings], parts: JobParts) -> Non
     for each, task in loaded:
         generated = each.unseen.names if each.unseen else ()
         require_metric(parts["factory"], task, (task.teaching.world, *task.exam.worlds, *generated))
+
+
+class Experiment(NamedTuple):
+    """One task in one reading."""
+
+    settings: ExperimentSettings
+    reading: Reading
+    task: TaskSettings
+
+    @property
+    def label(self) -> str:
+        """Label of the task in tables."""
+        return self.task.name.replace("_", " ")
+
+
+Examined = Group[Experiment, ExaminedOutcome]
+"""Robots of one experiment."""
+
+
+class GrowthStudy(NamedTuple):
+    """Fig. 2 in one reading."""
+
+    reading: Reading
+    task: str
+    curves: dict[float, list[tuple[int, ...]]]
+    """Number of RLAs after each second, a curve for each robot, by R in counts, in rising order."""
+
+
+@dataclass(frozen=True, slots=True)
+class PaperStudy:
+    """Plan and outcomes of the study."""
+
+    plan: StudyPlan[PaperExtent]
+    experiments: tuple[Examined, ...]
+    growth: tuple[GrowthStudy, ...]
+    """Empty when its task is not among those to be done."""
+
+    @property
+    def readings(self) -> tuple[Reading, ...]:
+        """Readings in the order of the report."""
+        return tuple(dict.fromkeys(each.of.reading for each in self.experiments))
+
+    def of(self, reading: Reading) -> tuple[Examined, ...]:
+        """Return the experiments in one reading."""
+        return tuple(each for each in self.experiments if each.of.reading == reading)
+
+
+def read_study(plan: StudyPlan[PaperExtent]) -> PaperStudy:
+    """Read the results of all jobs of the plan. Raises StudyError if a result is missing or damaged."""
+    jobs = plan.of(TaughtJob)
+    experiments = read_groups(jobs, lambda job: Experiment(job.settings, job.reading, job.task), ExaminedOutcome)
+    grown = read_groups(plan.of(GrowthJob), lambda job: (job.reading, job.task.name, job.radius), GrowthOutcome)
+    growth = tuple(
+        GrowthStudy(of.of[0], of.of[1], {each.of[2]: [robot.growth for robot in each.rows] for each in of.rows})
+        for of in group_by(sorted(grown, key=lambda each: each.of[2]), lambda each: each.of[:2])
+    )
+    return PaperStudy(plan, experiments, growth)

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.experiments.lockstep.drive_row import label_of
 from kurt2rt.experiments.lockstep.teacher_workload import SAID
+from kurt2rt.experiments.phases.results import MEASURES, PhasesStudy, exams_of, paired
 from kurt2rt.experiments.phases.steps import (
     BRANCHES,
     INTACT,
@@ -21,7 +22,6 @@ from kurt2rt.experiments.phases.steps import (
     PHASE_5,
     TITLES,
 )
-from kurt2rt.experiments.phases.tables import MEASURES, PhasesStudy, drives_of, passed_of
 from kurt2rt.experiments.study.figures import SavedFigure, save
 from kurt2rt.experiments.study.intervals import collisions_in_10_min, wilson_interval
 
@@ -74,17 +74,16 @@ def _draw_stages(study: PhasesStudy, names: Sequence[str], path: Path) -> None:
     success, collisions = figure.subplots(1, 2, sharey=True)
     places = np.arange(len(names))[::-1]
     # Not every stage is examined in every world: a world has its own colour and place all the same.
-    exams = {name: drives_of(study.stages[name]) for name in names}
-    every, most = list(dict.fromkeys(world for name in names for world in exams[name])), 1.0
-    for stage, place in zip(names, places, strict=True):
-        for world, drives in exams[stage].items():
-            number, passed, rate = every.index(world), passed_of(drives), collisions_in_10_min(drives)
-            at = place + 0.14 * ((len(every) - 1) / 2 - number)
-            colour = _WORLD_COLOURS[number % len(_WORLD_COLOURS)]
-            label = f"world {label_of(world)}" if stage == names[0] else None
-            _bar(success, at, passed / len(drives), wilson_interval(passed, len(drives)), colour, label)
-            _bar(collisions, at, rate.value, (rate.low, rate.high), colour, None)
-            most = max(most, rate.value)
+    exams = exams_of(*(study.stages[name] for name in names))
+    every, most = list(dict.fromkeys(each.world for each in exams)), 1.0
+    for each in exams:
+        number, robots, rate = every.index(each.world), len(each.rows), collisions_in_10_min(each.rows)
+        at = places[names.index(each.of)] + 0.14 * ((len(every) - 1) / 2 - number)
+        colour = _WORLD_COLOURS[number % len(_WORLD_COLOURS)]
+        label = f"world {label_of(each.world)}" if each.of == names[0] else None
+        _bar(success, at, each.passed / robots, wilson_interval(each.passed, robots), colour, label)
+        _bar(collisions, at, rate.value, (rate.low, rate.high), colour, None)
+        most = max(most, rate.value)
     success.set_yticks(places, [TITLES[name] for name in names])
     success.set_xlim(-0.03, 1.03)
     success.set_xlabel("share of the robots that succeed")
@@ -160,17 +159,18 @@ def _draw_agreement(study: PhasesStudy, path: Path) -> None:
 
 def _draw_intact(study: PhasesStudy, path: Path) -> None:
     """Each robot before and after, by each measure but success."""
-    before, after = drives_of(study.stages[PHASE_2]), drives_of(study.stages[INTACT])
-    first = next(iter(before.values()))[0]
-    shown = [measure for measure in MEASURES[1:] if measure.of(first) is not None]
+    pairs = paired(study.stages[PHASE_2], study.stages[INTACT])
+    worlds = list(dict.fromkeys(each.world for each in pairs))
+    shown = [measure for measure in MEASURES[1:] if any(each.measure == measure for each in pairs)]
     figure = Figure(figsize=(3.6 * len(shown), 4.2), layout="constrained")
     panels = figure.subplots(1, len(shown), squeeze=False)[0]
     for axes, measure in zip(panels, shown, strict=True):
-        for number, world in enumerate(after):
-            pairs = [[measure.of(drive) for drive in both] for both in zip(before[world], after[world], strict=True)]
-            colour = mpl.colors.to_rgba(_WORLD_COLOURS[number % len(_WORLD_COLOURS)], 0.6)
-            label = f"world {label_of(world)}" if measure is shown[0] else None
-            axes.plot(*np.array(pairs, dtype=np.float64).T, "o", color=colour, markersize=5, label=label)
+        for each in pairs:
+            if each.measure == measure:
+                number = worlds.index(each.world)
+                colour = mpl.colors.to_rgba(_WORLD_COLOURS[number % len(_WORLD_COLOURS)], 0.6)
+                label = f"world {label_of(each.world)}" if measure is shown[0] else None
+                axes.plot(*np.array(each.values, dtype=np.float64).T, "o", color=colour, markersize=5, label=label)
         low, high = (bound(*axes.get_xlim(), *axes.get_ylim()) for bound in (min, max))
         axes.plot([low, high], [low, high], color="#999999", linewidth=0.8, zorder=0)
         axes.set_title(measure.name, fontsize="medium")

@@ -5,7 +5,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 from config.settings import SettingsError
+from hal.robot_settings import RobotSettings
+from kurt2rt.core.critic.settings import CriticSettings
+from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.phase_settings import PhasesSettings
+from kurt2rt.core.reinforcement.settings import AutonomousValues
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, SignalTimes, Signs
@@ -18,6 +22,10 @@ PHASE_3, PHASE_4, PHASE_5, LONG_RUN = "phase-3", "phase-4", "phase-5", "long-run
 CORRUPTED, ASKS, UNKNOWN_BAD = "corrupted", "asks-only", "unknown-is-bad"
 BLAME_BY_CHANCE, REWARDS = "blame-by-chance", "rewards"
 JUDGED, CRITIC_ALONE, SHUFFLED, INTACT = "critic-judged", "critic-alone", "critic-shuffled", "intact-autonomous"
+
+_QUICK_TEACHING_S, _QUICK_EXAM_S, _QUICK_STEP_S, _QUICK_ALONE_S = 40.0, 6.0, 10.0, 40.0
+_QUICK_SHARE = 0.2
+"""Factor of the intervals in a quick run."""
 
 PATH = (UNTAUGHT, PHASE_1, PHASE_2, PHASE_3, PHASE_4, PHASE_5)
 BRANCHES = (CORRUPTED, ASKS, UNKNOWN_BAD, BLAME_BY_CHANCE, REWARDS, CRITIC_ALONE, SHUFFLED)
@@ -181,3 +189,48 @@ def _branch_steps(plans: _Plans) -> Iterator[PhaseStep]:
     yield PhaseStep(CRITIC_ALONE, PHASE_2, wrong, "taught", alone, worlds)
     yield PhaseStep(SHUFFLED, PHASE_2, wrong, "shuffled", alone, worlds)
     yield PhaseStep(INTACT, PHASE_2, 0.0, "taught", alone, plans.task.exam.worlds)
+
+
+def shortened(task: TaskSettings, robot: RobotSettings) -> TaskSettings:
+    """Return the task with all steps so short that they say nothing but that everything works."""
+    share = min(1.0, _QUICK_TEACHING_S / task.teaching.duration_s)
+    times = {name: float(round(getattr(task.teaching, name) * share)) for name in ("supervised_s", "corrections_s")}
+    worlds = task.exam.worlds[:1]
+    exam = {"worlds": worlds, "duration_s": min(task.exam.duration_s, _QUICK_EXAM_S)}
+    return task.model_copy(
+        update={
+            "teaching": task.teaching.model_copy(update=times),
+            "exam": task.exam.model_copy(update=exam),
+            "phases": phases_of(task).shortened(_QUICK_STEP_S, worlds, _QUICK_ALONE_S, _QUICK_SHARE),
+            "critic": _hastened(critic_of(task.critic, robot)),
+            "reinforcement": task.reinforcement.model_copy(update={"alone": _near_sinking(task.reinforcement.alone)}),
+        }
+    )
+
+
+def _near_sinking(worths: AutonomousValues) -> AutonomousValues:
+    """Return values that a few rewards can withdraw."""
+    names = ("first_value", "sunk_below", "well_above")
+    return worths.model_copy(update={name: _QUICK_SHARE * getattr(worths, name) for name in names})
+
+
+def _hastened(critic: CriticSettings) -> CriticSettings:
+    """Return a critic that is trusted, measures and changes after some seconds."""
+    agreement, every = critic.agreement, critic.signal_every_s
+    few = max(2, round(_QUICK_SHARE * agreement.least))
+    heard = {
+        "bound": _QUICK_SHARE * agreement.bound,
+        "least": few,
+        "window": 2 * few,
+        "apart_s": _QUICK_SHARE * agreement.apart_s,
+    }
+    return critic.model_copy(
+        update={
+            "agreement": agreement.model_copy(update=heard),
+            "signal_every_s": every.model_copy(
+                update={"bad": _QUICK_SHARE * every.bad, "good": _QUICK_SHARE * every.good}
+            ),
+            "need": critic.need.model_copy(update={"bad_share": 0.0, "first_s": 0.0}),
+            "best": critic.best.model_copy(update={"window_s": _QUICK_ALONE_S / 8}),
+        }
+    )

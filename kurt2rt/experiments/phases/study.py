@@ -1,28 +1,24 @@
 """Phases study: every step of every robot's training as a job, with the exams after it."""
 
 import shutil
-from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
-from behaviors.judges.judge import Judge
 from behaviors.repertoire import primitive_speeds
 from config.settings import Settings
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.critic.settings import CriticSettings, load_critic
+from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.reinforcement.settings import AutonomousValues
 from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.events import ActionWithdrawn, LessonUndone, TeachingEvent
 from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import Engine
@@ -31,7 +27,7 @@ from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
-from kurt2rt.experiments.phases.corruption import corrupt, critic_lessons, shuffled
+from kurt2rt.experiments.phases.controls import Judgement, Scoring, corrupt, critic_lessons, shuffled
 from kurt2rt.experiments.phases.steps import (
     PHASE_1,
     PHASE_2,
@@ -40,12 +36,13 @@ from kurt2rt.experiments.phases.steps import (
     UNTAUGHT,
     PhaseStep,
     phases_of,
+    shortened,
     steps_of,
 )
-from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places
+from kurt2rt.experiments.study.jobs import JobParts, StudyJob, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
-from kurt2rt.experiments.study.results import StudyError
-from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedEngine, StudyPlan
+from kurt2rt.experiments.study.results import Outcome, StudyError
+from kurt2rt.experiments.study.study_plan import EngineRequest, StudyPlan
 from kurt2rt.knowledge.journal.fold import fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_for_teaching, read_lessons
@@ -83,16 +80,6 @@ class TeachingOutcome(Settings):
         return self.collisions + self.rescues + self.alarms
 
 
-class Judgement(Settings):
-    """Opinions of judge and critic, with the number of their ticks."""
-
-    judged: int
-    """Opinion of the judge: -1, 0 or +1."""
-    said: int | None
-    """Opinion of the critic; None: unknown."""
-    ticks: int
-
-
 class StageOutcome(Settings):
     """A robot's knowledge at one stage, how it came there, and how it drives with it."""
 
@@ -118,31 +105,10 @@ class JobOutcome(Outcome):
     """Drives of the teacher's own policy; of the first job alone."""
 
 
-class Scoring:
-    """Counter of the pairs of opinions of critic and judge, while the robot drives."""
-
-    def __init__(self, judge: Judge) -> None:
-        self._judge = judge
-        self._ticks: Counter[tuple[int, int | None]] = Counter()
-
-    def on_tick(self, record: TickRecord) -> None:
-        """Count the pair of opinions of critic and judge in one tick; call it on every tick."""
-        if record.appraisal_features is None or not record.decision.driving:
-            return
-        said = None if record.opinion is None else record.opinion.said
-        self._ticks[self._judge.judge(record.appraisal_features), said] += 1
-
-    @property
-    def judgements(self) -> Iterator[Judgement]:
-        """Pairs of opinions of judge and critic, each with its number of ticks."""
-        for judged, said in sorted(self._ticks, key=str):
-            yield Judgement(judged=judged, said=said, ticks=self._ticks[judged, said])
-
-
 def replay_events(task: TaskSettings, robot: RobotSettings, events: Iterable[TeachingEvent]) -> RlaSystem:
     """Return the RLA system with all its levels, for counting: it does not match by the task's weights.
 
-    Raises SettingsError if the task's situation cannot be loaded, InvalidEventError if an event does not
+    Raises SettingsError if the situation of the task cannot be loaded, InvalidEventError if an event does not
     fit.
     """
     dimensions = load_situation(task.situation, robot.infrared.names).dimensions
@@ -153,9 +119,8 @@ def replay_events(task: TaskSettings, robot: RobotSettings, events: Iterable[Tea
     return system
 
 
-def teaching_outcome(lesson: TrainingResult, events: Iterable[TeachingEvent]) -> TeachingOutcome:
+def _teaching_outcome(lesson: TrainingResult, events: Sequence[TeachingEvent]) -> TeachingOutcome:
     """Return the stored counters of a training run; `events`: those of this run."""
-    events = tuple(events)
     own = [event for event in events if event.origin.teacher == CRITIC]
     undone = sum(isinstance(event, LessonUndone) for event in own)
     of_events: dict[str, Any] = {
@@ -167,17 +132,13 @@ def teaching_outcome(lesson: TrainingResult, events: Iterable[TeachingEvent]) ->
     return TeachingOutcome(**counted, **of_events)
 
 
-def stage_outcome(
+def _stage_outcome(
     name: str,
     system: RlaSystem,
     teaching: TeachingOutcome | None,
     exams: tuple[DriveRow, ...],
     judgements: tuple[Judgement, ...] = (),
 ) -> StageOutcome:
-    """Return the outcome of the stage `name`, with the counts of `system`; `teaching`: None without a training run.
-
-    `judgements`: opinions of critic and judge, if they were compared.
-    """
     return StageOutcome(
         name=name,
         rlas=len(system),
@@ -206,63 +167,44 @@ class PhasesJob(StudyJob):
         drives = await self._drive(setups, report, self.engines.exams)
         return tuple(each.stored().as_measure() for each in drives)
 
-    async def examine(
-        self,
-        events: Sequence[TeachingEvent],
-        saved: Statistics | None,
-        teachers: Sequence[DriveRow],
-        report: Report,
-        autonomous_values: Statistics | None = None,
-    ) -> tuple[DriveRow, ...]:
-        """Return the exams of the knowledge in `events`, measured by the teacher's own drives in the same worlds.
+    async def examine(self, exam: ExamSetup, teachers: Sequence[DriveRow], report: Report) -> tuple[DriveRow, ...]:
+        """Return the exams of a setup's knowledge, measured by the teacher's own drives in the same worlds.
 
-        Args:
-            events: lessons of the robot.
-            saved: values that rewards had given; None: none.
-            teachers: drives of the teacher's policy, one for each exam.
-            report: progress callback.
-            autonomous_values: values of phase 5; None: none.
-
-        Raises:
-            SettingsError: task and world do not fit.
-            UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
+        Raises SettingsError if task and world do not fit, UnknownActionError and UnknownBehaviourError if the knowledge
+        does not.
         """
-        exams = [self._exam(each.world, events, saved, autonomous_values) for each in teachers]
-        drives = await self._drive(exams, report, self.engines.exams)
+        drives = await self._drive([replace(exam, world=each.world) for each in teachers], report, self.engines.exams)
         return tuple(
             drive.stored().judged_by(teacher.progress, self.task.exam.success)
             for drive, teacher in zip(drives, teachers, strict=True)
         )
 
-    async def judge_critic(
-        self, events: Sequence[TeachingEvent], saved: Statistics | None, report: Report
-    ) -> tuple[Judgement, ...]:
-        """Drive in the world of the training without learning, and return the opinions of critic and judge.
+    async def judge_critic(self, exam: ExamSetup, report: Report) -> tuple[Judgement, ...]:
+        """Drive in the setup's world without learning, and return the opinions of critic and judge.
 
-        `saved`: values that rewards had given; None: none. Raises SettingsError if task and world do not fit.
+        Raises SettingsError if task and world do not fit.
         """
         assert self.task.judge is not None
         scoring = Scoring(self.task.judge.build())
-        exam = self._exam(self.task.teaching.world, events, saved, None)
         setup = replace(exam, appraises=True, on_tick=lambda record, _metric: scoring.on_tick(record))
         # A batch has no record of each tick.
         await self._drive([setup], report, Engine.CAN)
         return tuple(scoring.judgements)
 
-    def _exam(
-        self,
-        world: str,
-        events: Sequence[TeachingEvent],
-        saved: Statistics | None,
-        autonomous_values: Statistics | None,
+    def exam_of(
+        self, events: Sequence[TeachingEvent], saved: Statistics | None = None, alone: Statistics | None = None
     ) -> ExamSetup:
+        """Return the exam of this knowledge in the world of the training.
+
+        `saved`: values that rewards had given; `alone`: values of phase 5; None: none.
+        """
         # A robot without knowledge only stands: its exam need not last.
         return ExamSetup(
-            world,
+            self.task.teaching.world,
             self.seed,
             events=events,
             saved=saved,
-            autonomous_values=autonomous_values,
+            autonomous_values=alone,
             stuck_ends=not events,
         )
 
@@ -282,11 +224,11 @@ class FirstPhasesJob(PhasesJob):
         teachers = await self.drive_teacher(report)
         answered = list(takewhile(lambda event: event.origin.phase is Phase.SUPERVISED, events))
         stages = [
-            stage_outcome(
+            _stage_outcome(
                 name,
                 replay_events(self.task, self.robot, known),
-                teaching_outcome(lesson, events) if name == PHASE_2 else None,
-                await self.examine(known, None, teachers, report),
+                _teaching_outcome(lesson, events) if name == PHASE_2 else None,
+                await self.examine(self.exam_of(known), teachers, report),
             )
             for name, known in ((UNTAUGHT, []), (PHASE_1, answered), (PHASE_2, events))
         ]
@@ -317,7 +259,7 @@ class StepJob(PhasesJob):
         teaching, autonomous_values, plan = None, None, self.plan()
         if plan is not None:
             lesson, events = await self.teach(knowledge, report, plan=plan)
-            teaching, autonomous_values = teaching_outcome(lesson, events[before:]), lesson.autonomous_values
+            teaching, autonomous_values = _teaching_outcome(lesson, events[before:]), lesson.autonomous_values
             if step.aside:
                 self._copy_knowledge(knowledge)
                 self._add(knowledge, list(critic_lessons(events[before:])))
@@ -329,9 +271,9 @@ class StepJob(PhasesJob):
         else:
             by_world = {each.world: each for each in self.results.read(self.first, JobOutcome).teachers}
             teachers = [by_world[world] for world in step.worlds]
-            exams = await self.examine(events, saved, teachers, report, autonomous_values)
-        judgements = await self.judge_critic(events, saved, report) if step.judges_critic else ()
-        stage = stage_outcome(step.name, system, teaching, exams, judgements)
+            exams = await self.examine(self.exam_of(events, saved, autonomous_values), teachers, report)
+        judgements = await self.judge_critic(self.exam_of(events, saved), report) if step.judges_critic else ()
+        stage = _stage_outcome(step.name, system, teaching, exams, judgements)
         return JobOutcome(made_of=self.made_of, seed=self.seed, stages=(stage,))
 
     def plan(self) -> LessonPlan | None:
@@ -394,11 +336,6 @@ class StepJob(PhasesJob):
         yield from shuffled(appraisals, load_critic(self.task.critic), self.seed, self.robot.cycle_s)
 
 
-_QUICK_TEACHING_S, _QUICK_EXAM_S, _QUICK_STEP_S, _QUICK_ALONE_S = 40.0, 6.0, 10.0, 40.0
-_QUICK_SHARE = 0.2
-"""Factor of the intervals in a quick run."""
-
-
 class PhasesTask(NamedTuple):
     """Task that is taught through the phases."""
 
@@ -413,7 +350,7 @@ def make_plan(
     parts: JobParts,
     *,
     quick: bool = False,
-    engine: RequestedEngine = ALL_ON_BUS,
+    engine: EngineRequest = EngineRequest.CAN,
 ) -> StudyPlan[PhasesTask]:
     """Check task and worlds, and return the jobs.
 
@@ -429,7 +366,7 @@ def make_plan(
     """
     robot = parts["robot"]
     if quick:
-        task = _shortened(task, robot)
+        task = shortened(task, robot)
     worlds = (task.teaching.world, *task.exam.worlds, *phases_of(task).repair_worlds)
     require_places(parts["factory"], task, worlds)
     # What is long enough for one step decides nothing of another: each is made of the steps that lead to it.
@@ -440,18 +377,14 @@ def make_plan(
     def made_of(step: PhaseStep | None) -> Provenance:
         return fingerprints.of(task, worlds, critic, "\n".join(map(repr, _way_to(step, steps))))
 
-    made, made_first, exam_s = (
-        {name: made_of(step) for name, step in steps.items()},
-        made_of(None),
-        task.exam.duration_s,
-    )
+    made, exam_s = {name: made_of(step) for name, step in steps.items()}, task.exam.duration_s
     jobs: list[PhasesJob] = []
     for seed in seeds:
         first = FirstPhasesJob(
             **parts,
             task=task,
             seed=seed,
-            made_of=made_first,
+            made_of=made_of(None),
             name=f"phases 1 and 2, seed {seed}",
             stem=f"{PHASE_2}/{task.name}-{seed}",
             robot_time_s=task.teaching.duration_s + 3 * len(task.exam.worlds) * exam_s,
@@ -487,47 +420,3 @@ def _way_to(step: PhaseStep | None, by_name: dict[str, PhaseStep]) -> Iterator[P
 
 def _depth(step: PhaseStep, by_name: dict[str, PhaseStep]) -> int:
     return 1 + max(0 if name == PHASE_2 else _depth(by_name[name], by_name) for name in step.needs)
-
-
-def _shortened(task: TaskSettings, robot: RobotSettings) -> TaskSettings:
-    share = min(1.0, _QUICK_TEACHING_S / task.teaching.duration_s)
-    times = {name: float(round(getattr(task.teaching, name) * share)) for name in ("supervised_s", "corrections_s")}
-    worlds = task.exam.worlds[:1]
-    exam = {"worlds": worlds, "duration_s": min(task.exam.duration_s, _QUICK_EXAM_S)}
-    return task.model_copy(
-        update={
-            "teaching": task.teaching.model_copy(update=times),
-            "exam": task.exam.model_copy(update=exam),
-            "phases": phases_of(task).shortened(_QUICK_STEP_S, worlds, _QUICK_ALONE_S, _QUICK_SHARE),
-            "critic": _hastened(critic_of(task.critic, robot)),
-            "reinforcement": task.reinforcement.model_copy(update={"alone": _near_sinking(task.reinforcement.alone)}),
-        }
-    )
-
-
-def _near_sinking(worths: AutonomousValues) -> AutonomousValues:
-    """Return values that a few rewards can withdraw."""
-    names = ("first_value", "sunk_below", "well_above")
-    return worths.model_copy(update={name: _QUICK_SHARE * getattr(worths, name) for name in names})
-
-
-def _hastened(critic: CriticSettings) -> CriticSettings:
-    """Return a critic that is trusted, measures and changes after some seconds."""
-    agreement, every = critic.agreement, critic.signal_every_s
-    few = max(2, round(_QUICK_SHARE * agreement.least))
-    heard = {
-        "bound": _QUICK_SHARE * agreement.bound,
-        "least": few,
-        "window": 2 * few,
-        "apart_s": _QUICK_SHARE * agreement.apart_s,
-    }
-    return critic.model_copy(
-        update={
-            "agreement": agreement.model_copy(update=heard),
-            "signal_every_s": every.model_copy(
-                update={"bad": _QUICK_SHARE * every.bad, "good": _QUICK_SHARE * every.good}
-            ),
-            "need": critic.need.model_copy(update={"bad_share": 0.0, "first_s": 0.0}),
-            "best": critic.best.model_copy(update={"window_s": _QUICK_ALONE_S / 8}),
-        }
-    )

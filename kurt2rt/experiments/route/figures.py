@@ -10,8 +10,7 @@ from matplotlib.axes import Axes
 from kurt2rt.experiments.lockstep.drive_row import Place
 from kurt2rt.experiments.lockstep.trails import ASKED, columns, legend_below
 from kurt2rt.experiments.route.route_monitor import LAYERS
-from kurt2rt.experiments.route.study import RouteOutcome
-from kurt2rt.experiments.route.tables import RouteStudy
+from kurt2rt.experiments.route.study import RouteOutcome, Routes
 from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of, save
 from kurt2rt.experiments.study.table import collisions_text
 from simbridge.contracts.simulation import SimulationFactory
@@ -23,9 +22,9 @@ _BESIDE_M = 0.13
 """So far to the right of the middle of a street its way is drawn, so that both ways through it are seen."""
 
 
-def draw_figures(study: RouteStudy, factory: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
+def draw_figures(routes: Sequence[Routes], factory: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
     """Draw each length into the folder and yield it: route-<decisions>.png. Raises OSError."""
-    for decisions, outcomes in study.routes:
+    for decisions, outcomes in routes:
         path = folder / f"route-{decisions}.png"
         draw_routes(factory, outcomes, path)
         yield SavedFigure(

@@ -18,7 +18,7 @@ from kurt2rt.experiments.route.route_monitor import RouteMistake, RouteMonitor
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob, TaughtOutcome, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.results import StudyError
-from kurt2rt.experiments.study.study_plan import StudyPlan
+from kurt2rt.experiments.study.study_plan import Group, StudyPlan
 from kurt2rt.knowledge.journal.loading import copy_knowledge, read_lessons
 
 
@@ -36,6 +36,10 @@ class RouteOutcome(TaughtOutcome):
     """Exam; passed if every decision was right, without a collision, to the end."""
     wrong: tuple[RouteMistake, ...]
     """Decisions that were not right."""
+
+
+Routes = Group[int, RouteOutcome]
+"""Robots that were taught routes of one number of decisions."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

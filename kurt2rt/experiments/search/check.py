@@ -2,21 +2,19 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from optuna.trial import FrozenTrial
 from pydantic import ValidationError
 
 from config.settings import Settings
-from kurt2rt.experiments.search.plan import SHIPPED, SearchJob, SearchPlan, label_of
-from kurt2rt.experiments.search.score import RobotScore, effort, score_of
+from kurt2rt.experiments.search.plan import SHIPPED, SearchPlan, effort, label_of, score_of
 from kurt2rt.experiments.search.settings import Objective
 from kurt2rt.experiments.search.space import Values
 from kurt2rt.experiments.search.trials import SearchTrials, finished
 from kurt2rt.experiments.study.intervals import Rate, difference_of
-from kurt2rt.experiments.study.pool import PoolProgress
+from kurt2rt.experiments.study.jobs import ExaminedOutcome
+from kurt2rt.experiments.study.pool import Executor, PoolProgress, missing_time_s, run_missing
 from kurt2rt.experiments.study.results import StudyError
-from kurt2rt.experiments.study.runner import Executor, missing_time_s, run_missing
 from kurt2rt.knowledge.journal.writer import utc_now
 from kurt2rt.platform.durable_files import write_durably
 
@@ -39,7 +37,7 @@ class CheckedSettings:
 
     label: str
     values: Values
-    robots: tuple[RobotScore, ...]
+    robots: tuple[ExaminedOutcome, ...]
     passed: Rate
     """Difference of the share of exams passed; positive is better."""
     effort: Rate
@@ -56,7 +54,7 @@ class CheckResult:
     """Result of a check: scores of the shipped and of the found settings, robot by robot."""
 
     record: CheckRecord
-    shipped: tuple[RobotScore, ...]
+    shipped: tuple[ExaminedOutcome, ...]
     checked: tuple[CheckedSettings, ...]
     objective: Objective
 
@@ -67,34 +65,35 @@ class CheckResult:
         return max(better, key=lambda each: score_of(each.robots, self.objective), default=None)
 
 
-def begin_check(plan: SearchPlan, found: SearchTrials, trials: int) -> CheckRecord:
-    """Write down which of the first `trials` trials are checked; they never change. Raises StudyError, OSError."""
-    path = plan.folder / _FILE
-    if path.exists():
-        return read_record(path)
-    best = best_trials(found.all[:trials], plan.check.best, plan.space.shipped)
-    record = CheckRecord(trials=trials, candidates=tuple(trial.number for trial in best), date=utc_now())
-    write_durably(path, record.model_dump_json() + "\n")
-    return record
+def require_unchecked(plan: SearchPlan, trials: int) -> CheckRecord | None:
+    """Return the record of a check in the folder of the search, None without one; refuse more trials after it.
 
-
-def require_unchecked(plan: SearchPlan, trials: int) -> None:
-    """Refuse more trials after the check: a second one on the same seeds would choose by them. Raises StudyError."""
+    A second check on the same seeds would choose by them. Raises StudyError for them, and for a damaged record.
+    """
     path = plan.folder / _FILE
-    if path.exists() and (record := read_record(path)).trials != trials:
+    if not path.exists():
+        return None
+    try:
+        record = CheckRecord.model_validate_json(path.read_bytes())
+    except ValidationError as error:
+        raise StudyError("is not the record of a check", where=path, do="give a new folder with --out") from error
+    if record.trials != trials:
         raise StudyError(
             f"was checked after {record.trials} trials (got --trials {trials}, allowed {record.trials})",
             where=plan.folder,
             do="give a new folder with --out, and a search with other seeds for its check",
         )
+    return record
 
 
-def read_record(path: Path) -> CheckRecord:
-    """Return the record of a check. Raises StudyError if the file is damaged."""
-    try:
-        return CheckRecord.model_validate_json(path.read_bytes())
-    except ValidationError as error:
-        raise StudyError("is not the record of a check", where=path, do="give a new folder with --out") from error
+def _begin_check(plan: SearchPlan, found: SearchTrials, trials: int) -> CheckRecord:
+    """Write down which of the first `trials` trials are checked; they never change. Raises StudyError, OSError."""
+    record = require_unchecked(plan, trials)
+    if record is None:
+        best = best_trials(found.all[:trials], plan.check.best, plan.space.shipped)
+        record = CheckRecord(trials=trials, candidates=tuple(trial.number for trial in best), date=utc_now())
+        write_durably(plan.folder / _FILE, record.model_dump_json() + "\n")
+    return record
 
 
 def best_trials(trials: Sequence[FrozenTrial], count: int, shipped: Values) -> list[FrozenTrial]:
@@ -112,13 +111,16 @@ def check_time_s(plan: SearchPlan) -> float:
 def run_check(
     plan: SearchPlan,
     found: SearchTrials,
-    record: CheckRecord,
+    trials: int,
     executor: Executor,
     on_progress: Callable[[PoolProgress], None],
 ) -> CheckResult:
-    """Teach and examine all robots of the check that have no result, and compare.
+    """Write down the best trials, teach and examine all robots of the check that have no result, and compare.
 
     Args:
+        plan: of the search.
+        found: its trials.
+        trials: number of trials that the best ones are chosen among.
         executor: runs the jobs.
         on_progress: gets the robot time of the check.
 
@@ -126,7 +128,7 @@ def run_check(
         StudyError: a process was killed, or results of other settings are in the folder.
         Exception: any error of a job.
     """
-    results = plan.parts["results"]
+    results, record = plan.parts["results"], _begin_check(plan, found, trials)
     sets = {SHIPPED: plan.space.shipped, **{label_of(each): found.values(each) for each in record.candidates}}
     jobs = {label: plan.check_jobs(values, label) for label, values in sets.items()}
     checked_jobs = tuple(job for of_label in jobs.values() for job in of_label)
@@ -138,14 +140,10 @@ def run_check(
         on_progress(told._replace(done_s=min(whole_s, done_s + told.done_s)))
 
     run_missing([wave], results, executor, update)
-
-    def scores(of_label: Sequence[SearchJob]) -> tuple[RobotScore, ...]:
-        return tuple(job.score() for job in of_label)
-
-    shipped, objective = scores(jobs[SHIPPED]), plan.search.objective
+    robots = {label: tuple(job.read() for job in of_label) for label, of_label in jobs.items()}
+    shipped, objective = robots.pop(SHIPPED), plan.search.objective
     checked = tuple(
-        compare(label, sets[label], scores(jobs[label]), shipped, objective, len(record.candidates))
-        for label in map(label_of, record.candidates)
+        compare(label, sets[label], own, shipped, objective, len(record.candidates)) for label, own in robots.items()
     )
     return CheckResult(record, shipped, checked, objective)
 
@@ -153,8 +151,8 @@ def run_check(
 def compare(
     label: str,
     values: Values,
-    robots: tuple[RobotScore, ...],
-    shipped: Sequence[RobotScore],
+    robots: tuple[ExaminedOutcome, ...],
+    shipped: Sequence[ExaminedOutcome],
     objective: Objective,
     comparisons: int,
 ) -> CheckedSettings:
@@ -164,6 +162,8 @@ def compare(
         label,
         values,
         robots,
-        difference_of([own.passed_share - other.passed_share for own, other in pairs], comparisons),
+        difference_of(
+            [own.passed / len(own.drives) - other.passed / len(other.drives) for own, other in pairs], comparisons
+        ),
         difference_of([float(effort(own, objective) - effort(other, objective)) for own, other in pairs], comparisons),
     )

@@ -3,13 +3,13 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import fmean
 from typing import ClassVar
 
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.batch_mind import require_known_exams, require_known_lesson
 from kurt2rt.experiments.lockstep.engine import Engine, Engines, choose_witnesses
-from kurt2rt.experiments.search.score import RobotScore, robot_score
-from kurt2rt.experiments.search.settings import CheckSettings, Robots, SearchSettings
+from kurt2rt.experiments.search.settings import CheckSettings, Objective, Robots, SearchSettings
 from kurt2rt.experiments.search.space import TaskSpace, Values
 from kurt2rt.experiments.study.bus_witness import BusWitnessJob
 from kurt2rt.experiments.study.jobs import (
@@ -23,6 +23,11 @@ from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
 
 SHIPPED = "shipped"
 """Label of the shipped settings."""
+PRESSES_OF_A_COLLISION = 10
+"""Presses that a collision in a lesson counts as: it may hurt someone, and a press takes a second.
+
+With presses alone a search found settings of fleeing that ask 40 times less, and touch something 8 times as often.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,9 +38,9 @@ class SearchJob(CurriculumJob):
     label: str
     """Trial by its number, or `SHIPPED`."""
 
-    def score(self) -> RobotScore:
-        """Return the score of the stored result. Raises StudyError if it is missing or damaged."""
-        return robot_score(self.results.read(self, ExaminedOutcome))
+    def read(self) -> ExaminedOutcome:
+        """Return the stored result. Raises StudyError if it is missing or damaged."""
+        return self.results.read(self, ExaminedOutcome)
 
 
 def label_of(trial: int) -> str:
@@ -111,12 +116,41 @@ class SearchPlan:
         return tuple(jobs)
 
 
-def make_plan(
-    search: SearchSettings,
-    parts: JobParts,
-    *,
-    changes: Mapping[str, str],
-) -> SearchPlan:
+def effort(robot: ExaminedOutcome, objective: Objective) -> int:
+    """Return the number that is to be small: presses, presses and collisions, or RLAs."""
+    match objective:
+        case "passed_then_presses":
+            return robot.lesson.presses
+        case "passed_then_presses_and_collisions":
+            return robot.lesson.presses + PRESSES_OF_A_COLLISION * robot.lesson.collisions
+        case "passed_then_rlas":
+            return robot.lesson.rlas
+
+
+def exams_of(robots: Iterable[ExaminedOutcome]) -> int:
+    """Return the number of exams, also without a verdict: a search must not win by exams that are not judged."""
+    return sum(len(robot.drives) for robot in robots)
+
+
+def score_of(robots: Sequence[ExaminedOutcome], objective: Objective) -> float:
+    """Return a score, dimensionless: the share of exams passed, and less than half an exam more for little effort.
+
+    One more exam passed outweighs any effort.
+    """
+    passed = sum(robot.passed for robot in robots)
+    return (passed + 0.5 / (1.0 + fmean(effort(robot, objective) for robot in robots))) / exams_of(robots)
+
+
+def highest_score(robots: Sequence[ExaminedOutcome], exams: int) -> float:
+    """Return a bound that no score reaches, dimensionless: as if all other exams were passed without effort.
+
+    `exams`: number of exams of all robots, also of those that come after `robots`.
+    """
+    failed = exams_of(robots) - sum(robot.passed for robot in robots)
+    return (exams - failed + 0.5) / exams
+
+
+def make_plan(search: SearchSettings, parts: JobParts, *, changes: Mapping[str, str]) -> SearchPlan:
     """Check task, space and worlds, and return the plan.
 
     Args:

@@ -11,15 +11,21 @@ from matplotlib.figure import Figure
 from optuna.trial import FrozenTrial
 
 from kurt2rt.experiments.search.check import CheckedSettings, CheckResult, best_trials
-from kurt2rt.experiments.search.plan import SHIPPED, SearchPlan, label_of
-from kurt2rt.experiments.search.score import PRESSES_OF_A_COLLISION, RobotScore, effort
+from kurt2rt.experiments.search.plan import (
+    PRESSES_OF_A_COLLISION,
+    SHIPPED,
+    SearchPlan,
+    effort,
+    exams_of,
+    label_of,
+)
 from kurt2rt.experiments.search.settings import Objective, Robots
-from kurt2rt.experiments.search.space import Values
 from kurt2rt.experiments.search.trials import SearchTrials, finished
 from kurt2rt.experiments.study.figures import SavedFigure, save
 from kurt2rt.experiments.study.intervals import Rate
+from kurt2rt.experiments.study.jobs import ExaminedOutcome
 from kurt2rt.experiments.study.report import Section, spans, write_report
-from kurt2rt.experiments.study.table import Table, of_text, table_of, to_text
+from kurt2rt.experiments.study.table import Table, Told, of_text, rate_text, table_of
 from kurt2rt.platform.durable_files import write_durably
 
 _SHOWN = 5
@@ -31,11 +37,6 @@ _EFFORT: Mapping[Objective, str] = {
     "passed_then_presses_and_collisions": f"presses and {PRESSES_OF_A_COLLISION} times collisions",
     "passed_then_rlas": "RLAs",
 }
-
-
-def all_tables(plan: SearchPlan, found: SearchTrials, check: CheckResult) -> list[Table]:
-    """Return the tables of a finished search."""
-    return [_trials_table(plan, found, check.record.trials), _check_table(plan, check)]
 
 
 def verdict_text(plan: SearchPlan, check: CheckResult) -> str:
@@ -56,9 +57,9 @@ def _trials_table(plan: SearchPlan, found: SearchTrials, count: int) -> Table:
     shown = [*best_trials(trials, _SHOWN, plan.space.shipped), trials[0]]
     rows = []
     for trial in shown:
-        robots = [job.score() for job in plan.trial_jobs(trial.params, trial.number)]
+        robots = [job.read() for job in plan.trial_jobs(trial.params, trial.number)]
         name = SHIPPED if trial.params == plan.space.shipped else label_of(trial.number)
-        rows.append((name, *_cells(robots, search.objective), *_values(trial.params, keys)))
+        rows.append((name, *_cells(robots, search.objective), *(f"{trial.params[key]:g}" for key in keys)))
     pruned = len(trials) - len(finished(trials))
     robots_text = f"{search.search.seeds.count} robots from seed {search.search.seeds.first}"
     return Table(
@@ -86,19 +87,14 @@ def _check_table(plan: SearchPlan, check: CheckResult) -> Table:
     )
 
 
-def _cells(robots: Sequence[RobotScore], objective: Objective) -> tuple[str, str]:
-    passed, exams = sum(each.passed for each in robots), sum(each.exams for each in robots)
+def _cells(robots: Sequence[ExaminedOutcome], objective: Objective) -> tuple[str, str]:
+    passed, exams = sum(each.passed for each in robots), exams_of(robots)
     of_robot = fmean(effort(each, objective) for each in robots)
     return of_text(passed, exams), f"{of_robot:.1f}"
 
 
-def _values(values: Values, keys: Sequence[str]) -> tuple[str, ...]:
-    return tuple(f"{values[key]:g}" for key in keys)
-
-
 def _difference(difference: Rate, factor: float = 1.0) -> str:
-    value, *ends = (factor * each for each in difference)
-    return f"{value:+.1f} ({to_text(ends, '+.1f')})"
+    return rate_text(Rate(*(factor * each for each in difference)), "+.1f")
 
 
 def draw_trials(plan: SearchPlan, trials: list[FrozenTrial], path: Path) -> SavedFigure:
@@ -184,10 +180,10 @@ def _checked(each: CheckedSettings, check: CheckResult) -> dict[str, Any]:
     }
 
 
-def _counts(robots: tuple[RobotScore, ...], objective: Objective) -> dict[str, Any]:
+def _counts(robots: tuple[ExaminedOutcome, ...], objective: Objective) -> dict[str, Any]:
     return {
         "passed": sum(each.passed for each in robots),
-        "exams": sum(each.exams for each in robots),
+        "exams": exams_of(robots),
         "effort": [effort(each, objective) for each in robots],
     }
 
@@ -196,18 +192,15 @@ def _interval(difference: Rate) -> dict[str, float]:
     return {name: round(value, _DIGITS) for name, value in difference._asdict().items()}
 
 
-def write_search(
-    plan: SearchPlan,
-    check: CheckResult,
-    tables: Sequence[Table],
-    pictures: Sequence[SavedFigure],
-    command: str,
-    path: Path,
-) -> None:
-    """Write tables, figure, space and provenance as an HTML page to `path`. Raises OSError.
+def tell(plan: SearchPlan, found: SearchTrials, check: CheckResult, command: str) -> Told:
+    """Write figure, found settings and report into the folder of the search; return the tables. Raises OSError.
 
     `command`: typed words, without those that belong to the machine alone.
     """
+    tables = [_trials_table(plan, found, check.record.trials), _check_table(plan, check)]
+    figure = draw_trials(plan, found.all[: check.record.trials], plan.folder / "trials.png")
+    files = {"found": plan.folder / "found.yaml", "report": plan.folder / "report.html"}
+    write_found(plan, check, command, files["found"])
     search = plan.search
     space = table_of(
         "Space",
@@ -226,14 +219,16 @@ def write_search(
         f"seeds {spans(plan.check.seeds.seeds)}, which chose nothing."
     )
     write_report(
-        path,
+        files["report"],
         f"KURT2: search for settings of {search.task}",
         (
             Section("", (verdict_text(plan, check), told), (*tables, space)),
-            Section("Figure", pictures=pictures),
+            Section("Figure", pictures=[figure]),
             Section("How this was made"),
         ),
         command=command,
         footer=f"Checked on {check.record.date}. {{versions}}. Source: {{source}}. The same command with the same "
         "versions has the same trials.",
     )
+    better = None if check.found is None else check.found.label
+    return Told(tables, (), files, (), {"better": better, "verdict": verdict_text(plan, check)})

@@ -12,12 +12,11 @@ from optuna.distributions import BaseDistribution, FloatDistribution
 from optuna.study import Study
 from optuna.trial import FrozenTrial, Trial, TrialState, create_trial
 
-from kurt2rt.experiments.search.plan import SearchPlan
-from kurt2rt.experiments.search.score import RobotScore, highest_score, score_of
+from kurt2rt.experiments.search.plan import SearchPlan, highest_score, score_of
 from kurt2rt.experiments.search.settings import Dimension
 from kurt2rt.experiments.search.space import Values, rounded
-from kurt2rt.experiments.study.pool import PoolProgress
-from kurt2rt.experiments.study.runner import Executor, run_missing
+from kurt2rt.experiments.study.jobs import ExaminedOutcome
+from kurt2rt.experiments.study.pool import Executor, PoolProgress, run_missing
 
 _STARTUP_TRIALS = 10
 """Trials with random values, before a model of the earlier ones chooses."""
@@ -135,8 +134,8 @@ def _run_together(
     robots, before_s = plan.search.search.seeds.count, 0.0
     exams = robots * len(plan.search.search.worlds)
 
-    def scores(number: int, count: int) -> list[RobotScore]:
-        return [job.score() for job in jobs[number][:count]]
+    def robots_of(number: int, count: int) -> list[ExaminedOutcome]:
+        return [job.read() for job in jobs[number][:count]]
 
     for step in range(robots):
         wave = tuple(jobs[number][step] for number in numbers)
@@ -148,11 +147,11 @@ def _run_together(
         run_missing([(*wave, *plan.witnesses_of_trials(wave))], plan.parts["results"], executor, update)
         before_s += wave_s
         for number in numbers:
-            found.report(number, step, score_of(scores(number, step + 1), plan.search.objective))
+            found.report(number, step, score_of(robots_of(number, step + 1), plan.search.objective))
         if step < robots - 1:
-            hopeless = [number for number in numbers if highest_score(scores(number, step + 1), exams) <= to_beat]
+            hopeless = [number for number in numbers if highest_score(robots_of(number, step + 1), exams) <= to_beat]
             for number in hopeless:
                 found.prune(number)
             numbers = [number for number in numbers if number not in hopeless]
     for number in numbers:
-        found.finish(number, score_of(scores(number, robots), plan.search.objective))
+        found.finish(number, score_of(robots_of(number, robots), plan.search.objective))

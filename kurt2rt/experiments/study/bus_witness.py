@@ -10,9 +10,8 @@ from pydantic import ValidationError
 
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.engine import ON_BUS, BatchDiffersError
-from kurt2rt.experiments.study.jobs import Outcome, StudyJob
-from kurt2rt.experiments.study.pool import Progress
-from kurt2rt.experiments.study.results import Results, StudyError
+from kurt2rt.experiments.study.jobs import StudyJob
+from kurt2rt.experiments.study.results import Outcome, Progress, Results, StudyError
 from kurt2rt.knowledge.journal.loading import read_knowledge
 
 _MOST_NAMED = 5

@@ -13,8 +13,7 @@ from kurt2rt.experiments.lockstep.engine import choose_witnesses
 from kurt2rt.experiments.study.cluster_file import ClusterError, no_scheduler, read_cluster_file
 from kurt2rt.experiments.study.pool import JobKilledError, PoolProgress
 from kurt2rt.experiments.study.remote_job import RemoteJob, WorkerDiffersError, pack, run_remote_job, unpack
-from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.runner import StoredJob
+from kurt2rt.experiments.study.results import Results, StoredJob
 
 _AHEAD = 2
 """Remote jobs on their way for each worker, so that none waits for its next one."""

@@ -1,18 +1,103 @@
-"""Tables of training runs and exams, of one robot and of many seeds."""
+"""Tables of training runs and exams, of one robot and of many, and the columns of drives that all studies share."""
 
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from operator import attrgetter
+from typing import Any, Generic, NamedTuple
 
 from behaviors.metrics.task_metric import JUNCTIONS, RIGHT
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.drive_row import NOT_JUDGED_BECAUSE, PLACES, DriveRow, ExamVerdict, label_of
 from kurt2rt.experiments.lockstep.lesson import LessonCounts
-from kurt2rt.experiments.study.intervals import quartiles
-from kurt2rt.experiments.study.table import Table, median, of_text, share_text, table_of, to_text
+from kurt2rt.experiments.study.intervals import collisions_in_10_min, right_rate
+from kurt2rt.experiments.study.jobs import ExaminedOutcome
+from kurt2rt.experiments.study.study_plan import Group, KeyT, group_by
+from kurt2rt.experiments.study.table import (
+    Column,
+    Table,
+    collisions_text,
+    median,
+    middle,
+    of_text,
+    quarters,
+    rate_columns,
+    share_text,
+    table_of,
+    to_text,
+    total,
+)
 
-Robot = tuple[LessonCounts, Sequence[DriveRow]]
-"""Training run of one robot, and its exams, one in each world."""
 _SUCCESS_WORDS = {ExamVerdict.PASSED: "yes", ExamVerdict.FAILED: "no"}
+
+
+class Drives(NamedTuple, Generic[KeyT]):
+    """Drives that share a line of a table: of one stage or experiment in one world."""
+
+    of: KeyT
+    """Stage or experiment."""
+    world: str
+    rows: tuple[DriveRow, ...]
+    is_first: bool
+    """True for the first world, whose line tells what is the same in all worlds."""
+
+    @property
+    def passed(self) -> int:
+        """Number of drives that passed."""
+        return sum(each.passed for each in self.rows)
+
+    @property
+    def judged(self) -> int:
+        """Number of drives with a verdict; in the others the teacher's own drive got nowhere."""
+        return sum(each.judged for each in self.rows)
+
+
+def by_world(of: KeyT, drives: Iterable[DriveRow]) -> list[Drives[KeyT]]:
+    """Return drives in lines of one world each, in order of their first drives."""
+    groups = group_by(drives, lambda each: each.world)
+    return [Drives(of, world, rows, place == 0) for place, (world, rows) in enumerate(groups)]
+
+
+WORLD: Column = ("world", lambda each: label_of(each.world))
+SUCCESS: tuple[Column, Column] = (
+    ("success", lambda each: success_text(each.rows)),
+    ("95 %", lambda each: share_text(each.passed, each.judged)),
+)
+STUCK = total("stuck", "ended_early")
+COLLIDED: Column = ("collided", lambda each: sum(row.collisions > 0 for row in each.rows))
+PROGRESS: Column = ("progress", lambda each: f"{median(row.progress for row in each.rows):.1f} {each.rows[0].unit}")
+PROGRESS_QUARTILES = quarters("progress", ".1f")
+UNKNOWN = middle("unknown", "share_unknown", ".1%")
+RIGHT_COLUMNS: tuple[Column, Column] = (
+    ("junctions right", lambda each: right_text(each.rows)),
+    ("95 %", lambda each: "" if (right := right_rate(each.rows)) is None else to_text(right[1:], ".1%")),
+)
+
+
+def collision_columns(heading: str = "collisions in 10 min") -> tuple[Column, Column]:
+    """Return the columns of the collisions in 10 min of driving, and of their interval."""
+    return rate_columns(heading, lambda each: collisions_in_10_min(each.rows))
+
+
+def measure_column(name: str, heading: str = "") -> Column:
+    """Return the column of the median of a metric's further measure; its name is the heading without another."""
+
+    def cell(each: Any) -> str:
+        values = [row.findings[name] for row in each.rows if name in row.findings]
+        return f"{median(values):.3f}" if values else ""
+
+    return heading or name, cell
+
+
+def success_text(drives: Sequence[DriveRow]) -> str:
+    """Return the number of drives that passed: `18 of 20`, or `18 of 19, 1 not judged`."""
+    judged = sum(each.judged for each in drives)
+    left_out = f", {len(drives) - judged} not judged" if judged < len(drives) else ""
+    return of_text(sum(each.passed for each in drives), judged) + left_out
+
+
+def right_text(drives: Sequence[DriveRow]) -> str:
+    """Return the share of the junctions that were left as asked, and how many there were; empty without any."""
+    right = right_rate(drives)
+    return "" if right is None else f"{right.value:.1%} of {sum(each.junctions for each in drives)}"
 
 
 def lesson_table(lesson: LessonCounts, task: TaskSettings) -> Table:
@@ -39,21 +124,20 @@ def lesson_table(lesson: LessonCounts, task: TaskSettings) -> Table:
 
 def exams_as_data(exams: Sequence[DriveRow], task: TaskSettings) -> dict[str, Any]:
     """Return the numbers of exams and of the teacher's own drives, for JSON, without places."""
-    told = []
-    for each in exams:
-        learned, teacher = (
-            None if row is None else row.model_dump(exclude={"verdict", "teacher", *PLACES})
-            for row in (each, each.teacher)
-        )
-        told.append(
-            {
-                "world": each.world,
-                "succeeded": each.passed,
-                "verdict": each.verdict.value,
-                "learned": learned,
-                "teacher": teacher,
-            }
-        )
+
+    def numbers(row: DriveRow | None) -> dict[str, Any] | None:
+        return None if row is None else row.model_dump(exclude={"verdict", "teacher", *PLACES})
+
+    told = [
+        {
+            "world": each.world,
+            "succeeded": each.passed,
+            "verdict": each.verdict.value,
+            "learned": numbers(each),
+            "teacher": numbers(each.teacher),
+        }
+        for each in exams
+    ]
     return {"task": task.name, "exams": told}
 
 
@@ -68,7 +152,7 @@ def exam_tables(exams: Sequence[DriveRow], task: TaskSettings) -> Iterator[Table
     yield table_of(
         f"Exams without teacher, {task.exam.duration_s:.0f} s each",
         exams,
-        ("world", lambda each: label_of(each.world)),
+        WORLD,
         (unit, lambda each: f"{each.progress:.2f}"),
         (f"teacher's own {unit}", lambda each: measure_text(each, ".2f")),
         ("collisions", lambda each: each.collisions),
@@ -77,7 +161,7 @@ def exam_tables(exams: Sequence[DriveRow], task: TaskSettings) -> Iterator[Table
         ("success", lambda each: _SUCCESS_WORDS.get(each.verdict, each.verdict.text)),
         note="" if all(each.judged for each in exams) else f"{NOT_JUDGED_BECAUSE.capitalize()}.",
     )
-    yield from _measures_tables("Measures", [(each.world, [each]) for each in exams])
+    yield from _measures_tables("Measures", by_world(None, exams))
 
 
 def verdict_text(exam: DriveRow) -> str:
@@ -85,9 +169,9 @@ def verdict_text(exam: DriveRow) -> str:
     assert exam.teacher is not None
     if not exam.judged:
         return f"{NOT_JUDGED_BECAUSE} ({exam.teacher.progress:.2f} {exam.unit})"
-    collisions = {0: "no collision", 1: "1 collision"}.get(exam.collisions, f"{exam.collisions} collisions")
     why = f" ({exam.teacher.why_no_measure})" if exam.teacher.why_no_measure else ""
     way = f"{exam.progress:.2f} of the teacher's {exam.teacher.progress:.2f} {exam.unit}{why}"
+    collisions = collisions_text(exam.collisions) if exam.collisions else "no collision"
     return ", ".join(filter(None, (way, collisions, exam.early_end)))
 
 
@@ -98,45 +182,57 @@ def measure_text(exam: DriveRow, form: str) -> str:
     return f"{exam.teacher.progress:{form}}{f' ({why})' if why else ''}"
 
 
-def seeds_tables(robots: Sequence[Robot], task: TaskSettings) -> Iterator[Table]:
+def seeds_tables(robots: Sequence[ExaminedOutcome], task: TaskSettings) -> Iterator[Table]:
     """Yield the tables of many robots: a row for each, then medians, quartiles and intervals."""
-    by_world = [(drives[0].world, drives) for drives in zip(*(exams for _, exams in robots), strict=True)]
-    unit = by_world[0][1][0].unit
+    by_place = by_world(
+        None, (drive for place in zip(*(each.drives for each in robots), strict=True) for drive in place)
+    )
+    unit = by_place[0].rows[0].unit
 
-    def counted(name: str) -> Callable[[Robot], object]:
-        return lambda robot: getattr(robot[0], name)
-
-    def cell(place: int) -> Callable[[Robot], str]:
-        return lambda robot: _drive_text(robot[1][place])
+    def drive(place: int) -> Callable[[ExaminedOutcome], str]:
+        return lambda robot: _drive_text(robot.drives[place])
 
     yield table_of(
         f"{task.name}, taught by {task.teaching.profile.name}: one row per seed",
         robots,
-        ("seed", counted("seed")),
-        ("RLAs", counted("rlas")),
-        *((name, counted(name)) for name in ("asks", "corrections", "rescues")),
+        ("seed", lambda robot: robot.seed),
+        ("RLAs", lambda robot: robot.lesson.rlas),
+        *((name, attrgetter(f"lesson.{name}")) for name in ("asks", "corrections", "rescues")),
         *(
-            (f"world {label_of(world)}: {unit} of teacher's, collisions", cell(place))
-            for place, (world, _) in enumerate(by_world)
+            (f"world {label_of(each.world)}: {unit} of teacher's, collisions", drive(place))
+            for place, each in enumerate(by_place)
         ),
         words=0,
     )
-    yield _medians_table([lesson for lesson, _ in robots], task)
+    paper = task.paper
+    rows = (
+        ("RLAs", "rlas", paper.rlas_text),
+        ("asks", "asks", ""),
+        ("corrections", "corrections", ""),
+        ("presses", "presses", ""),
+        ("teaching, s of robot time", "teaching_s", paper.teaching_time_text),
+    )
+    taught = Group(None, tuple(robots))
+    yield table_of(
+        f"{len(robots)} seeds",
+        rows,
+        ("", lambda row: row[0]),
+        ("median", lambda row: middle("", f"lesson.{row[1]}", ".0f")[1](taught)),
+        ("quartiles", lambda row: quarters(f"lesson.{row[1]}", ".0f")[1](taught)),
+        ("paper", lambda row: row[2]),
+    )
     yield table_of(
         "Exams without teacher",
-        by_world,
-        ("world", lambda each: label_of(each[0])),
-        ("success", lambda each: success_text(each[1])),
-        (
-            "95 % interval",
-            lambda each: share_text(sum(d.passed for d in each[1]), sum(d.judged for d in each[1])) or "none",
-        ),
-        ("collided", lambda each: sum(drive.collisions > 0 for drive in each[1])),
-        ("stuck", lambda each: sum(drive.ended_early for drive in each[1])),
-        (f"{unit}, median", lambda each: f"{median(drive.progress for drive in each[1]):.2f}"),
-        ("unknown, median", lambda each: f"{median(drive.share_unknown for drive in each[1]):.1%}"),
+        by_place,
+        WORLD,
+        SUCCESS[0],
+        ("95 % interval", lambda each: share_text(each.passed, each.judged) or "none"),
+        COLLIDED,
+        STUCK,
+        middle(f"{unit}, median", "progress", ".2f"),
+        middle("unknown, median", "share_unknown", ".1%"),
     )
-    yield from _measures_tables("Measures, median", by_world)
+    yield from _measures_tables("Measures, median", by_place)
 
 
 def _drive_text(exam: DriveRow) -> str:
@@ -145,46 +241,17 @@ def _drive_text(exam: DriveRow) -> str:
     return f"{exam.progress:.1f} of {measure_text(exam, '.1f')}, {exam.collisions}{end}{verdict}"
 
 
-def success_text(drives: Sequence[DriveRow]) -> str:
-    """Return the number of drives that passed: `18 of 20`, or `18 of 19, 1 not judged`."""
-    judged = sum(each.judged for each in drives)
-    left_out = f", {len(drives) - judged} not judged" if judged < len(drives) else ""
-    return of_text(sum(each.passed for each in drives), judged) + left_out
-
-
-def _medians_table(lessons: Sequence[LessonCounts], task: TaskSettings) -> Table:
-    def of(name: str) -> tuple[float, float, float]:
-        return quartiles([getattr(each, name) for each in lessons])
-
-    rows = (
-        ("RLAs", "rlas", task.paper.rlas_text),
-        ("asks", "asks", ""),
-        ("corrections", "corrections", ""),
-        ("presses", "presses", ""),
-        ("teaching, s of robot time", "teaching_s", task.paper.teaching_time_text),
-    )
-    return table_of(
-        f"{len(lessons)} seeds",
-        rows,
-        ("", lambda row: row[0]),
-        ("median", lambda row: f"{of(row[1])[1]:.0f}"),
-        ("quartiles", lambda row: to_text(of(row[1])[::2], ".0f")),
-        ("paper", lambda row: row[2]),
-    )
-
-
-def _measures_tables(title: str, by_world: Sequence[tuple[str, Sequence[DriveRow]]]) -> Iterator[Table]:
+def _measures_tables(title: str, worlds: Sequence[Drives[None]]) -> Iterator[Table]:
     """Yield the table of further measures, a column for each world; no table without measures."""
-    names = dict.fromkeys(name for _, drives in by_world for drive in drives for name in drive.findings)
+    names = dict.fromkeys(name for world in worlds for drive in world.rows for name in drive.findings)
     # The number of junctions is in the same cell as the number of right ones.
     shown = [name for name in names if not name.startswith(JUNCTIONS) or name.startswith(RIGHT)]
 
-    def cell(drives: Sequence[DriveRow]) -> Callable[[str], str]:
-        return lambda name: _measure(drives, name)
+    def cell(world: Drives[None]) -> Callable[[str], str]:
+        return lambda name: _measure(world.rows, name)
 
     if shown:
-        columns = ((label_of(world), cell(drives)) for world, drives in by_world)
-        yield table_of(title, shown, ("", lambda name: name), *columns)
+        yield table_of(title, shown, ("", str), *((label_of(world.world), cell(world)) for world in worlds))
 
 
 def _measure(drives: Sequence[DriveRow], name: str) -> str:

@@ -1,6 +1,6 @@
-"""Job of a study: drives of one robot in simulated time, with a stored result."""
+"""Jobs of a study: drives of one robot in simulated time, with a stored result."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -19,10 +19,11 @@ from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import ON_BUS, Engine, Engines
 from kurt2rt.experiments.lockstep.lesson import GivenLesson, LessonCounts
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
-from kurt2rt.experiments.study.pool import Progress
-from kurt2rt.experiments.study.provenance import Provenance
-from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.results import Outcome, Progress, Results, StoredJob
 from simbridge.contracts.simulation import SimulationFactory
+
+SEED = "SEED"
+"""Part of a world's name that stands for a robot's seed."""
 
 
 class JobParts(TypedDict):
@@ -31,13 +32,6 @@ class JobParts(TypedDict):
     factory: SimulationFactory
     robot: RobotSettings
     results: Results
-
-
-class Outcome(Settings):
-    """Result of a job as its study stores it in JSON, with what made it."""
-
-    made_of: Provenance
-    seed: int
 
 
 class TaughtOutcome(Outcome):
@@ -54,35 +48,25 @@ class ExaminedOutcome(TaughtOutcome):
     drives: tuple[DriveRow, ...]
     """Exams, each with the teacher's own drive."""
 
+    @property
+    def passed(self) -> int:
+        """Number of exams that were passed."""
+        return sum(each.passed for each in self.drives)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StudyJob(ABC):
-    """Drives of one robot, in a process of their own, which leave a file of results and one of knowledge."""
+class StudyJob(StoredJob):
+    """Drives of one robot, which leave a file of results and one of knowledge."""
 
-    outcome: ClassVar[type[Settings]]
-    """Schema of the result."""
-    replaces_others: ClassVar[bool] = False
-    keeps_knowledge: ClassVar[bool] = True
     gives_lesson: ClassVar[bool] = False
     """True if the job gives the task's own lesson to a robot without knowledge, as a batch can."""
     gives_exams: ClassVar[bool] = False
     """True if the job examines robots that were taught its task, as a batch can."""
     factory: SimulationFactory
     robot: RobotSettings
-    results: Results
     task: TaskSettings
-    seed: int
-    made_of: Provenance
-    name: str
-    """Name in progress displays."""
-    stem: str
-    """Path of result and knowledge, without the top folder and the ending."""
-    robot_time_s: float
-    """Simulated time in s, at most."""
     engines: Engines = ON_BUS
     """Loops that drive, which change no result."""
-    wave: int = 0
-    """The job needs results of earlier waves only."""
 
     @abstractmethod
     async def measure(self, knowledge: Path, report: Report) -> Settings:
@@ -90,22 +74,6 @@ class StudyJob(ABC):
 
         Raises KnowledgeError, SettingsError, LessonLostError, BatchRefusedError, BatchDiffersError.
         """
-
-    @property
-    def file(self) -> str:
-        """Path of the result within the folder of results."""
-        return f"results/{self.stem}.json"
-
-    @property
-    def knowledge_name(self) -> str | None:
-        """Path of the stored knowledge within the folder of results; None: the job stores none."""
-        return f"knowledge/{self.stem}.knowledge" if self.keeps_knowledge else None
-
-    @property
-    def knowledge(self) -> Path:
-        """Path of the stored knowledge file in the folder of results; it exists after the job."""
-        assert self.knowledge_name is not None
-        return self.results.folder / self.knowledge_name
 
     async def teach(
         self,
@@ -137,11 +105,17 @@ class StudyJob(ABC):
 
         Raises the errors of `measure`, and OSError if the results cannot be stored.
         """
-        anyio.run(self._run, ProgressSum(on_progress).report)
+        before_s = now_s = 0.0
 
-    async def _run(self, report: Report) -> None:
+        def report(_what: str, done_s: float, _whole_s: float) -> None:
+            nonlocal before_s, now_s
+            if done_s < now_s:  # the next drive of the job
+                before_s += now_s
+            now_s = done_s
+            on_progress(before_s + done_s)
+
         with self.results.scratch() as folder:
-            outcome = await self.measure(folder / "knowledge", report)
+            outcome = anyio.run(self.measure, folder / "knowledge", report)
             if self.knowledge_name is not None:
                 self.results.keep(folder / "knowledge", self.knowledge_name)
         self.results.write(self, outcome)
@@ -177,29 +151,6 @@ class CurriculumJob(StudyJob):
 def curriculum_time_s(task: TaskSettings, worlds: int) -> float:
     """Return the time of the lesson, and in so many worlds of the exam and of the teacher's own drive, in s."""
     return task.teaching.duration_s + 2 * worlds * task.exam.duration_s
-
-
-class ProgressSum:
-    """Sum of the robot time of successive drives."""
-
-    def __init__(self, tell: Progress) -> None:
-        self._tell = tell
-        self._before_s = 0.0
-        self._now_s = 0.0
-
-    def report(self, what: str, done_s: float, whole_s: float) -> None:  # noqa: ARG002 - as curriculum.Report
-        """Report the sum after `done_s`, in s, of a drive; a smaller `done_s` than before begins the next drive.
-
-        `what` and `whole_s` are not used.
-        """
-        if done_s < self._now_s:
-            self._before_s += self._now_s
-        self._now_s = done_s
-        self._tell(self._before_s + done_s)
-
-
-SEED = "SEED"
-"""Part of a world's name that stands for a robot's seed."""
 
 
 def world_of(place: str, seed: int) -> str:

@@ -1,10 +1,11 @@
-"""Many jobs in parallel processes."""
+"""Runner of a study: jobs in waves, of which the missing ones run in parallel processes or on other machines."""
 
 import gc
 import multiprocessing
 import os
 import signal
 import threading
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, MutableMapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -12,15 +13,13 @@ from contextlib import contextmanager
 from multiprocessing import connection
 from multiprocessing.managers import SyncManager
 from multiprocessing.process import BaseProcess
-from typing import NamedTuple, Protocol, Self
+from typing import NamedTuple, Protocol
 
 from threadpoolctl import threadpool_limits
 
 from config.errors import ExitCode, UserError
+from kurt2rt.experiments.study.results import Progress, Results, StoredJob, StudyError
 from kurt2rt.platform.gc_control import freeze_survivors
-
-Progress = Callable[[float], None]
-"""Takes how far a job is, in seconds of robot time."""
 
 _LOOK_EVERY_S = 0.5
 _TELL_EVERY_S = 5.0
@@ -28,24 +27,6 @@ _TELL_EVERY_S = 5.0
 
 class JobKilledError(UserError):
     """The process of a job was killed from outside; the message names the job."""
-
-
-class Job(Protocol):
-    """Job that can be sent to another process, and keeps its result itself."""
-
-    @property
-    def name(self) -> str:
-        """Name of the job next to its progress bar."""
-        ...
-
-    @property
-    def robot_time_s(self) -> float:
-        """Simulated time of the whole job in s, for the progress."""
-        ...
-
-    def run(self, tell: Progress, /) -> None:
-        """Run the job; `tell` gets the simulated seconds so far."""
-        ...
 
 
 class PoolProgress(NamedTuple):
@@ -57,14 +38,14 @@ class PoolProgress(NamedTuple):
     """Names of the running jobs."""
 
 
-def _run_here(jobs: Sequence[Job], on_progress: Callable[[PoolProgress], None]) -> None:
+def _run_here(jobs: Sequence[StoredJob], on_progress: Callable[[PoolProgress], None]) -> None:
     before_s = 0.0
     frozen_before = gc.get_freeze_count()
     try:
         for job in jobs:
             on_progress(PoolProgress(before_s, (job.name,)))
 
-            def tell(done_s: float, job: Job = job, before_s: float = before_s) -> None:
+            def tell(done_s: float, job: StoredJob = job, before_s: float = before_s) -> None:
                 on_progress(PoolProgress(before_s + done_s, (job.name,)))
 
             freeze_survivors()
@@ -77,8 +58,42 @@ def _run_here(jobs: Sequence[Job], on_progress: Callable[[PoolProgress], None]) 
     on_progress(PoolProgress(before_s, ()))
 
 
+class Executor(Protocol):
+    """Runner of jobs, here or on other machines; each job leaves its result in the folder of results here."""
+
+    def run(
+        self,
+        jobs: Sequence[StoredJob],
+        earlier: Mapping[int, Sequence[StoredJob]],
+        results: Results,
+        on_progress: Callable[[PoolProgress], None],
+    ) -> None:
+        """Run all jobs, of which none needs another; the longest begin first.
+
+        Args:
+            jobs: of one wave.
+            earlier: jobs that are done, by the seed of their robot.
+            results: folder of results.
+            on_progress: gets the progress of all jobs.
+
+        Raises:
+            JobKilledError: the process or the workers of a job were killed.
+            Exception: any error of a job.
+        """
+
+
+@contextmanager
+def open_processes(count: int) -> Iterator[Executor]:
+    """Yield an executor with at most so many processes of this machine, 1: this one; end them."""
+    processes = JobProcesses(count)
+    try:
+        yield processes
+    finally:
+        processes.end()
+
+
 class JobProcesses:
-    """Processes that run the jobs of several waves; a context that ends them.
+    """Processes of this machine that run the jobs of several waves, whose earlier results are in their folder.
 
     They are started for the first wave of more than one job, and kept: each takes seconds to import what a job needs.
     """
@@ -93,24 +108,24 @@ class JobProcesses:
         self._others: set[BaseProcess] = set()
         self._begun: set[BaseProcess] = set()
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
+    def end(self) -> None:
+        """End all processes."""
         if self._pool is not None:
             self._pool.shutdown()
         if self._manager is not None:
             self._manager.shutdown()
 
-    def run(self, jobs: Sequence[Job], on_progress: Callable[[PoolProgress], None] = lambda _: None) -> None:
-        """Run all jobs, the longest first; after an error no others can be run.
+    def run(
+        self,
+        jobs: Sequence[StoredJob],
+        earlier: Mapping[int, Sequence[StoredJob]],  # noqa: ARG002 - their files are here
+        results: Results,  # noqa: ARG002 - each job knows its folder
+        on_progress: Callable[[PoolProgress], None],
+    ) -> None:
+        """Run all jobs (`Executor.run`), with one process in this one; after an error no others can be run.
 
-        With one process it is this one. The first error of a job ends all other jobs, and so does Ctrl-C; the error's
-        notes name the job. `on_progress` gets the progress of all jobs twice a second.
-
-        Raises:
-            JobKilledError: a process was killed from outside.
-            Exception: any error of a job.
+        The first error of a job ends all other jobs, and so does Ctrl-C; the error's notes name the job. `on_progress`
+        gets the progress of all jobs twice a second. Raises JobKilledError, and any error of a job.
         """
         # The longest last would leave the other processes idle at the end.
         ordered = sorted(jobs, key=lambda job: -job.robot_time_s)
@@ -129,7 +144,7 @@ class JobProcesses:
             )
         return self._pool, self._manager
 
-    def _run_apart(self, jobs: Sequence[Job], on_progress: Callable[[PoolProgress], None]) -> None:
+    def _run_apart(self, jobs: Sequence[StoredJob], on_progress: Callable[[PoolProgress], None]) -> None:
         pool, manager = self._started()
         clocks, workers = manager.dict(), manager.dict()
         places: dict[Future[None], int] = {}
@@ -166,7 +181,7 @@ def _killed(left: Sequence[int], workers: Mapping[int, int], processes: Iterable
 
 
 @contextmanager
-def _named(job: Job) -> Iterator[None]:
+def _named(job: StoredJob) -> Iterator[None]:
     """Add the name of the job to the notes of its errors."""
     try:
         yield
@@ -175,7 +190,9 @@ def _named(job: Job) -> Iterator[None]:
         raise
 
 
-def _run_in_worker(job: Job, place: int, clocks: MutableMapping[int, float], workers: MutableMapping[int, int]) -> None:
+def _run_in_worker(
+    job: StoredJob, place: int, clocks: MutableMapping[int, float], workers: MutableMapping[int, int]
+) -> None:
     workers[place] = os.getpid()
     # As on the command line: this process shares the machine with its siblings.
     freeze_survivors()
@@ -196,7 +213,7 @@ def _now_and_then(tell: Progress) -> Progress:
 
 
 def _pool_progress(
-    jobs: Sequence[Job], left: Sequence[int], processes: int, clocks: MutableMapping[int, float]
+    jobs: Sequence[StoredJob], left: Sequence[int], processes: int, clocks: MutableMapping[int, float]
 ) -> PoolProgress:
     """`left`: places of the jobs that are not through, in the order in which they are begun."""
     clock_s = dict(clocks)
@@ -218,3 +235,41 @@ def _belong_to_the_parent() -> None:
         os._exit(ExitCode.FAILED)
 
     threading.Thread(target=follow, daemon=True, name="follow the parent").start()
+
+
+Waves = Sequence[Sequence[StoredJob]]
+"""Jobs of a study in waves, each of which needs only the waves before."""
+
+
+def missing_time_s(waves: Waves, results: Results) -> float:
+    """Return the robot time of all jobs without a result, in s.
+
+    Raises StudyError if there are results of other settings, source or versions, or damaged files.
+    """
+    return sum(wave[place].robot_time_s for wave in waves for place in results.missing(wave))
+
+
+def run_missing(
+    waves: Waves, results: Results, executor: Executor, on_progress: Callable[[PoolProgress], None]
+) -> None:
+    """Run the jobs without a result, wave by wave; each stores its result as soon as it is done.
+
+    `on_progress` gets the progress of all waves together. Raises StudyError if a process was killed, or results of
+    other settings are in the folder, and any error of a job.
+    """
+    before_s = 0.0
+    earlier: dict[int, list[StoredJob]] = defaultdict(list)
+    for wave in waves:
+        jobs = [wave[place] for place in results.missing(wave)]
+
+        def update(progress: PoolProgress, before_s: float = before_s) -> None:
+            on_progress(PoolProgress(before_s + progress.done_s, progress.running))
+
+        try:
+            executor.run(jobs, earlier, results, update)
+        except JobKilledError as error:
+            do = "run again, it goes on where it was (with fewer --jobs it needs less)"
+            raise StudyError(f"{error}", do=do) from error
+        before_s += sum(job.robot_time_s for job in jobs)
+        for job in wave:
+            earlier[job.seed].append(job)

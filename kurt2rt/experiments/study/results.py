@@ -1,12 +1,14 @@
-"""The folder where results are kept: one file per job, so that a run which was interrupted goes on where it was."""
+"""Stored results of a study: its jobs, and a folder with a file for each, so that an interrupted run goes on."""
 
 import fcntl
 import shutil
 import tempfile
-from collections.abc import Iterator, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO, Protocol, TypeVar
+from typing import ClassVar, TypeVar
 
 from pydantic import ValidationError
 
@@ -18,6 +20,8 @@ from kurt2rt.platform.durable_files import write_durably
 _UNFINISHED = "unfinished-"
 _NEW_FOLDER = "give a new folder with --out, or delete the results in this one"
 
+Progress = Callable[[float], None]
+"""Takes the simulated seconds of a job so far."""
 OutcomeT = TypeVar("OutcomeT", bound=Settings)
 
 
@@ -25,28 +29,54 @@ class StudyError(UserError):
     """Stored results cannot be used, or experiments do not fit together."""
 
 
-class StoredResult(Protocol):
-    """Job with a stored result."""
+class Outcome(Settings):
+    """Result of a job as its study stores it in JSON, with what made it."""
+
+    made_of: Provenance
+    seed: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StoredJob(ABC):
+    """Job that can be sent to another process, and leaves its result in a file."""
+
+    outcome: ClassVar[type[Settings]]
+    """Schema of the result."""
+    replaces_others: ClassVar[bool] = False
+    """True if the job runs again, and replaces its result, if that is of other settings; False: it is refused."""
+    keeps_knowledge: ClassVar[bool] = True
+    results: "Results"
+    seed: int
+    """Seed of the robot; jobs of other robots need none of its files."""
+    made_of: Provenance
+    name: str
+    """Name in progress displays."""
+    stem: str
+    """Path of result and knowledge, without the top folder and the ending."""
+    robot_time_s: float
+    """Simulated time in s, at most."""
+    wave: int = 0
+    """The job needs results of earlier waves only."""
 
     @property
     def file(self) -> str:
         """Path of the result within the folder of results."""
-        ...
+        return f"results/{self.stem}.json"
 
     @property
-    def made_of(self) -> Provenance:
-        """Hashes of what made the result; a result of another making is refused."""
-        ...
+    def knowledge_name(self) -> str | None:
+        """Path of the stored knowledge within the folder of results; None: the job stores none."""
+        return f"knowledge/{self.stem}.knowledge" if self.keeps_knowledge else None
 
     @property
-    def outcome(self) -> type[Settings]:
-        """Class of its outcome, which is the schema of the file."""
-        ...
+    def knowledge(self) -> Path:
+        """Path of the stored knowledge file; it exists after the job."""
+        assert self.knowledge_name is not None
+        return self.results.folder / self.knowledge_name
 
-    @property
-    def replaces_others(self) -> bool:
-        """True if the job runs again, and replaces its result, if that is of other settings; False: it is refused."""
-        ...
+    @abstractmethod
+    def run(self, on_progress: Progress) -> None:
+        """Run the job, and store result and knowledge; any error of the job is raised."""
 
 
 class _AnyOutcome(Settings, extra="ignore"):
@@ -67,20 +97,14 @@ class Results:
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         with (self.folder / ".lock").open("ab") as lock:
-            self._lock(lock)
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError as error:
+                do = "wait for its end, or give another folder with --out"
+                raise StudyError("another run writes here", where=self.folder, do=do) from error
             for left_over in self.folder.glob(f"{_UNFINISHED}*"):
                 shutil.rmtree(left_over)
             yield
-
-    def _lock(self, lock: BinaryIO) -> None:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
-            raise StudyError(
-                "another run writes here",
-                where=self.folder,
-                do="wait for its end, or give another folder with --out",
-            ) from error
 
     @contextmanager
     def scratch(self) -> Iterator[Path]:
@@ -88,7 +112,7 @@ class Results:
         with tempfile.TemporaryDirectory(prefix=_UNFINISHED, dir=self.folder) as folder:
             yield Path(folder)
 
-    def missing(self, jobs: Sequence[StoredResult]) -> list[int]:
+    def missing(self, jobs: Sequence[StoredJob]) -> list[int]:
         """Return the indexes of the jobs that have no result yet.
 
         Raises StudyError if there are results of other settings, source or versions, or damaged files: they are never
@@ -120,19 +144,16 @@ class Results:
             )
         return missing
 
-    def write(self, job: StoredResult, outcome: Settings) -> None:
+    def write(self, job: StoredJob, outcome: Settings) -> None:
         """Store the outcome of a job, whole and durable. Raises OSError."""
         write_durably(self.folder / job.file, outcome.model_dump_json() + "\n")
 
-    def read(self, job: StoredResult, schema: type[OutcomeT]) -> OutcomeT:
+    def read(self, job: StoredJob, schema: type[OutcomeT]) -> OutcomeT:
         """Return the outcome of a job. Raises StudyError if it is missing, damaged or of another schema."""
         return self._read(self.folder / job.file, schema)
 
     def keep(self, file: Path, name: str) -> None:
-        """Move a finished file out of the scratch folder to `name`, a path within the folder of results.
-
-        Raises OSError.
-        """
+        """Move a finished file out of the scratch folder to `name`, a path within this folder. Raises OSError."""
         path = self.folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         file.replace(path)

@@ -7,9 +7,9 @@ from typing import ClassVar
 
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.study.jobs import CurriculumJob, ExaminedOutcome, JobParts, curriculum_time_s
-from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.provenance import Fingerprints
-from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedEngine, StudyPlan
+from kurt2rt.experiments.study.results import Progress
+from kurt2rt.experiments.study.study_plan import EngineRequest, StudyPlan
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 
 
@@ -31,19 +31,9 @@ class SeedJob(CurriculumJob):
 
 
 def make_plan(
-    task: TaskSettings, seeds: Sequence[int], parts: JobParts, *, engine: RequestedEngine = ALL_ON_BUS
+    task: TaskSettings, seeds: Sequence[int], parts: JobParts, *, engine: EngineRequest = EngineRequest.CAN
 ) -> StudyPlan[None]:
-    """Return the jobs.
-
-    Args:
-        task: that is taught.
-        seeds: one robot each.
-        parts: factory, robot and results of the jobs.
-        engine: requested for lessons and exams.
-
-    Raises:
-        config.settings.SettingsError: settings of the task or a world cannot be loaded.
-    """
+    """Return the jobs that teach and examine a robot of each seed; raises SettingsError for settings of no use."""
     made = Fingerprints(parts["factory"], parts["robot"]).of(task, (task.teaching.world, *task.exam.worlds))
     jobs = [
         SeedJob(
@@ -65,7 +55,7 @@ def forget_lost_robots(plan: StudyPlan[None]) -> None:
     """Delete each result whose robot has no knowledge file, because its robot is taught again. Raises OSError."""
     for job in plan.jobs:
         if not job.knowledge.exists():
-            (job.results.folder / job.file).unlink(missing_ok=True)
+            forget_result(job.results.folder, job.task.name, job.seed)
 
 
 def forget_result(folder: Path, task: str, seed: int) -> None:
@@ -75,4 +65,4 @@ def forget_result(folder: Path, task: str, seed: int) -> None:
 
 def read_results(plan: StudyPlan[None]) -> list[ExaminedOutcome]:
     """Return the outcomes, in the order of the seeds. Raises StudyError if one is missing or damaged."""
-    return [job.results.read(job, ExaminedOutcome) for job in plan.of(SeedJob)]
+    return [job.results.read(job, ExaminedOutcome) for job in plan.jobs]

@@ -1,16 +1,20 @@
 """Table for terminal and report, from rows and columns."""
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from typing import TypeVar
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from operator import attrgetter
+from pathlib import Path
+from typing import Any, TypeVar
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from kurt2rt.experiments.study.intervals import quartiles, wilson_interval
+from kurt2rt.experiments.study.intervals import Rate, quartiles, wilson_interval
 from kurt2rt.platform.text_table import TextTable
 
 RowT = TypeVar("RowT")
+Column = tuple[str, Callable[[Any], object]]
+"""Heading of a column, and the function from a row to what its cell shows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +30,21 @@ class Table:
     """Explanation below the table."""
 
 
+@dataclass(frozen=True, slots=True)
+class Told:
+    """Results that a study shows when its jobs are done."""
+
+    tables: Sequence[Table]
+    not_judged: Sequence[str] = ()
+    """Reasons against judging by its targets."""
+    files: Mapping[str, Path] = field(default_factory=dict)
+    """Files that it leaves, by what they are, such as report."""
+    lines: Sequence[str] = ()
+    """Commands to copy, below the tables."""
+    data: Mapping[str, object] = field(default_factory=dict)
+    """Numbers for JSON besides the tables."""
+
+
 def table_of(
     title: str,
     rows: Iterable[RowT],
@@ -33,15 +52,7 @@ def table_of(
     words: int = 1,
     note: str = "",
 ) -> Table:
-    """Return a table with a row for each of `rows`.
-
-    Args:
-        title: of the table.
-        rows: things to show.
-        columns: heading of each column, and the function from a row to what its cell shows.
-        words: number of columns from the left that hold words.
-        note: explanation below the table.
-    """
+    """Return a table with a row for each of `rows`; the fields of `Table` have their other parts."""
     cells = tuple(tuple(str(of(row)) for _, of in columns) for row in rows)
     return Table(title, tuple(heading for heading, _ in columns), cells, words, note)
 
@@ -54,6 +65,44 @@ def as_rich(table: Table) -> RenderableType:
     for row in table.rows:
         shown.add_row(*row)
     return Group(shown, *([Text(table.note)] if table.note else ()))
+
+
+def middle(heading: str, path: str, form: str = "g") -> Column:
+    """Return the column of the median over the rows of a group; `path`: attributes with dots, such as lesson.asks."""
+    of = attrgetter(path)
+    return heading, lambda group: f"{median(of(row) for row in group.rows):{form}}"
+
+
+def quarters(path: str, form: str = "g", heading: str = "quartiles") -> Column:
+    """Return the column of the lower and the upper quartile over the rows of a group, next to `middle`."""
+    of = attrgetter(path)
+    return heading, lambda group: to_text(quartiles([of(row) for row in group.rows])[::2], form)
+
+
+def most(heading: str, path: str) -> Column:
+    """Return the column of the largest value over the rows of a group."""
+    of = attrgetter(path)
+    return heading, lambda group: f"{max(of(row) for row in group.rows):g}"
+
+
+def total(heading: str, path: str) -> Column:
+    """Return the column of the sum over the rows of a group; True counts as 1."""
+    of = attrgetter(path)
+    return heading, lambda group: sum(of(row) for row in group.rows)
+
+
+def share(heading: str, path: str) -> Column:
+    """Return the column of the number of rows of a group for which an attribute is true: `18 of 20`."""
+    of = attrgetter(path)
+    return heading, lambda group: of_text(sum(map(of, group.rows)), len(group.rows))
+
+
+def rate_columns(heading: str, rate: Callable[[Any], Rate], form: str = ".2f") -> tuple[Column, Column]:
+    """Return the columns of a rate and of its 95 % interval."""
+    return (
+        (heading, lambda row: f"{rate(row).value:{form}}"),
+        ("95 %", lambda row: to_text(rate(row)[1:], form)),
+    )
 
 
 def median(values: Iterable[float]) -> float:
@@ -78,6 +127,11 @@ def to_text(ends: Iterable[float], form: str) -> str:
     """Return `1.5 to 2.5`: the ends of an interval, each in the format `form`."""
     low, high = ends
     return f"{low:{form}} to {high:{form}}"
+
+
+def rate_text(rate: Rate, form: str = ".2f") -> str:
+    """Return `2.0 (1.5 to 2.5)`: a rate and its interval, each in the format `form`."""
+    return f"{rate.value:{form}} ({to_text(rate[1:], form)})"
 
 
 def collisions_text(collisions: int) -> str:

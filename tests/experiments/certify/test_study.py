@@ -13,14 +13,13 @@ from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.certify.study import (
     BlockJob,
     BrokenShare,
-    Certificate,
     Certified,
     Extent,
     Run,
     draw_runs,
     make_plan,
     picture_jobs,
-    read_certificate,
+    read_drives,
     read_pictures,
 )
 from kurt2rt.experiments.certify.tables import all_tables, draw_worst, summarise
@@ -30,7 +29,6 @@ from kurt2rt.experiments.lockstep.curriculum import run_drives
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import BatchDiffersError, Engine
 from kurt2rt.experiments.lockstep.exam import ExamSetup
-from kurt2rt.experiments.study.bus_witness import BusWitnessJob
 from kurt2rt.experiments.study.remote_job import pack, run_remote_job
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.study_plan import StudyPlan
@@ -42,6 +40,9 @@ from tests.simbridge.batch.equal_lessons import batch_lesson
 
 SECONDS = 12.0 if IS_COMPILED else 2.0
 EXTENT = Extent(first=20_000, runs=4, places=("c", "rooms-SEED"), engine=Engine.COMPILED)
+
+
+Made = tuple[Path, StudyPlan[Certified]]
 
 
 def ignore(_done_s: float) -> None:
@@ -56,10 +57,10 @@ def plan_in(
 
 
 @pytest.fixture(scope="module")
-def made(taught: Taught, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Certificate]:
+def made(taught: Taught, tmp_path_factory: pytest.TempPathFactory) -> Made:
     """Return the folder of a certificate, and the certificate."""
     folder = tmp_path_factory.mktemp("certify")
-    return folder, read_certificate(carry_out(plan_in(folder, taught), folder))
+    return folder, carry_out(plan_in(folder, taught), folder)
 
 
 def driven(task: TaskSettings, events: Sequence[TeachingEvent], runs: Sequence[Run], engine: Engine) -> list[DriveRow]:
@@ -102,17 +103,22 @@ def test_start_in_sight_is_that_of_the_bus() -> None:
     require_equal(task, (), [Run(4, "one_object")])
 
 
-def test_certificate_has_all_runs_and_equal_witnesses(made: tuple[Path, Certificate]) -> None:
-    _, certificate = made
-    assert [each.seed for each in certificate.drives] == [20_000, 20_001, 20_002, 20_003]
-    assert certificate.compared == 3
-    assert all(0 < each.duration_s <= SECONDS for each in certificate.drives)
+def test_certificate_has_all_runs_and_equal_witnesses(made: Made) -> None:
+    _, plan = made
+    drives = read_drives(plan)
+    assert [each.seed for each in drives] == [20_000, 20_001, 20_002, 20_003]
+    assert len(plan.witnesses) == 3
+    assert all(0 < each.duration_s <= SECONDS for each in drives)
+    probabilities, rates = all_tables(plan, list(summarise(plan, drives)), [])
+    assert [row[0] for row in probabilities.rows] == [row[0] for row in rates.rows]
+    assert probabilities.rows[-1][:2] == ("all", "4")
+    assert "3 runs were driven on the CAN bus too, with equal results." in probabilities.note
 
 
-def test_worker_on_another_machine_gives_the_same_files(made: tuple[Path, Certificate], tmp_path: Path) -> None:
-    folder, certificate = made
-    block, own = certificate.plan.of(BlockJob)[0], tmp_path / "own.knowledge"
-    witness = certificate.plan.of(BusWitnessJob)[0]
+def test_worker_on_another_machine_gives_the_same_files(made: Made, tmp_path: Path) -> None:
+    folder, plan = made
+    block, own = plan.of(BlockJob)[0], tmp_path / "own.knowledge"
+    witness = plan.witnesses[0]
     assert isinstance(witness.of, BlockJob)
     content = block.taught.read_bytes()
     moved_block = replace(block, taught=own, results=Results(tmp_path))
@@ -125,28 +131,20 @@ def test_worker_on_another_machine_gives_the_same_files(made: tuple[Path, Certif
             run_remote_job(pack(moved, moved.results, ()))
 
 
-def test_worst_runs_are_driven_again_and_drawn(made: tuple[Path, Certificate], tmp_path: Path) -> None:
-    _, certificate = made
-    worst = certificate.drives[:1]
-    jobs = [replace(job, results=Results(tmp_path)) for job in picture_jobs(certificate.plan, worst)]
+def test_worst_runs_are_driven_again_and_drawn(made: Made, tmp_path: Path) -> None:
+    _, plan = made
+    worst = read_drives(plan)[:1]
+    jobs = [replace(job, results=Results(tmp_path)) for job in picture_jobs(plan, worst)]
     for job in jobs:
         job.run(ignore)
     drives = read_pictures(jobs, worst)
     assert drives[0].trail
-    pictures = list(draw_worst(drives, ["kurt2rt exam"], STAGE, tmp_path))
+    pictures = list(draw_worst(drives, ["kurt2rt exam"], replace(plan, jobs=tuple(jobs))))
     assert [each.path for each in pictures] == [tmp_path / f"run-{each.seed}.png" for each in worst]
     assert all(each.path.stat().st_size > 10_000 for each in pictures)
     other = [each.model_copy(update={"collisions": 99}) for each in worst]
     with pytest.raises(BatchDiffersError, match=rf"run {worst[0].seed} in world"):
         read_pictures(jobs, other)
-
-
-def test_tables_have_a_row_for_each_place_and_for_all(made: tuple[Path, Certificate]) -> None:
-    _, certificate = made
-    probabilities, rates = list(all_tables(certificate, []))
-    assert [row[0] for row in probabilities.rows] == [row[0] for row in rates.rows]
-    assert probabilities.rows[-1][:2] == ("all", "4")
-    assert "3 runs were driven on the CAN bus too, with equal results." in probabilities.note
 
 
 def test_witness_with_another_outcome_refuses_all(
@@ -162,21 +160,13 @@ def test_witness_with_another_outcome_refuses_all(
         carry_out(plan_in(tmp_path, taught), tmp_path)
 
 
-def test_bus_alone_has_the_outcomes_of_the_batch(made: tuple[Path, Certificate], taught: Taught) -> None:
-    folder, certificate = made
-    plan = plan_in(folder / "bus", taught, EXTENT._replace(runs=2, engine=Engine.CAN))
-    on_bus = read_certificate(carry_out(plan, folder / "bus"))
-    assert on_bus.drives == certificate.drives[:2]
-    assert on_bus.compared == 0
-    assert "All runs were driven on the CAN bus." in next(all_tables(on_bus, [])).note
-
-
 def test_runs_with_a_broken_sensor_have_a_row_of_their_own(taught: Taught, tmp_path: Path) -> None:
     extent = EXTENT._replace(runs=3, places=("a",), broken=BrokenShare(1.0, ("s3",)))
-    certificate = read_certificate(carry_out(plan_in(tmp_path, taught, extent, short_task(exam_s=6.0)), tmp_path))
-    assert [summary.place for summary in summarise(certificate)] == ["a sensor breaks"]
-    assert all(run.broken.startswith("s3=") for run in certificate.plan.about.runs)
-    stopped = [each for each in certificate.drives if each.alarm]
+    plan = carry_out(plan_in(tmp_path, taught, extent, short_task(exam_s=6.0)), tmp_path)
+    drives = read_drives(plan)
+    assert [summary.place for summary in summarise(plan, drives)] == ["a sensor breaks"]
+    assert all(run.broken.startswith("s3=") for run in plan.about.runs)
+    stopped = [each for each in drives if each.alarm]
     assert {each.alarm for each in stopped} == {"sensor broken left mid front (s3)"}
     assert all(2.0 < each.duration_s < 6.0 and not each.stuck for each in stopped)
 
@@ -186,7 +176,7 @@ def test_witnesses_are_a_share_of_the_runs_without_a_break(
     taught: Taught, tmp_path: Path, runs: int, witnesses: int
 ) -> None:
     plan = plan_in(tmp_path, taught, EXTENT._replace(first=0, runs=runs, broken=BrokenShare(0.2, ("s3",))))
-    chosen = {run for job in plan.of(BusWitnessJob) if isinstance(job.of, BlockJob) for run in job.of.runs}
+    chosen = {run for job in plan.witnesses if isinstance(job.of, BlockJob) for run in job.of.runs}
     assert len(chosen) == witnesses
     assert chosen <= {run for run in plan.about.runs if not run.broken}
 

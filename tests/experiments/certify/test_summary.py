@@ -5,10 +5,10 @@ from typing import Any
 import pytest
 
 from kurt2rt.experiments.certify.study import BrokenShare, draw_runs
-from kurt2rt.experiments.certify.tables import summarise_runs, worst_runs
+from kurt2rt.experiments.certify.tables import summarise_runs, worst_of
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind
-from kurt2rt.experiments.study.intervals import poisson_interval, wilson_interval
+from kurt2rt.experiments.study.intervals import wilson_interval
 from tests.experiments.rows import row
 
 PLACES = ("a", "b", "rooms-SEED")
@@ -42,24 +42,11 @@ def test_rates_count_time_until_the_end_of_runs() -> None:
     assert summary.m_per_minute == pytest.approx(60 / 4.5)
 
 
-def test_first_question_rate_ends_the_time_of_a_run_at_it() -> None:
-    first = summarise_runs("a", RUNS).first_questions_per_hour
-    hours = 240 / 3600
-    assert first == pytest.approx((1 / hours, *(each / hours for each in poisson_interval(1))))
-
-
-def test_interval_of_many_runs_needs_no_bootstrap_over_each() -> None:
-    runs = [run(n, collisions=int(n % 10 == 0)) for n in range(2000)]
-    rate = summarise_runs("a", runs).collisions_per_hour
-    assert rate.value == pytest.approx(6.0)
-    assert 5.0 < rate.low < 6.0 < rate.high < 7.0
-
-
 def test_worst_runs_are_ordered_and_leave_out_clean_ones() -> None:
     worse = run(9, collisions=7)
-    assert [each.seed for each in worst_runs([*RUNS, worse], 10)] == [9, 5, 4, 3]
-    assert worst_runs(RUNS, 1) == [COLLIDES]
-    assert worst_runs(RUNS[:2], 5) == []
+    assert [each.seed for each in worst_of([*RUNS, worse], 10)] == [9, 5, 4, 3]
+    assert worst_of(RUNS, 1) == [COLLIDES]
+    assert worst_of(RUNS[:2], 5) == []
 
 
 def test_run_follows_from_its_number() -> None:

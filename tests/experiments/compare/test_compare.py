@@ -18,9 +18,8 @@ from kurt2rt.core.learner.rla_learner import RlaLearner
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
-from kurt2rt.experiments.compare.pupil import PUPILS, SHIPPED, Pupil
-from kurt2rt.experiments.compare.study import Compared, PupilJob, PupilOutcome, make_plan
-from kurt2rt.experiments.compare.tables import Comparison, read_comparison
+from kurt2rt.experiments.compare.study import PUPILS, SHIPPED, Compared, Pupil, PupilJob, PupilOutcome, make_plan
+from kurt2rt.experiments.compare.tables import Row, read_rows
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, feature_table
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
@@ -28,7 +27,7 @@ from kurt2rt.experiments.lockstep.engine import ON_BUS, Engine, Engines
 from kurt2rt.experiments.lockstep.lesson import GivenLesson, teach
 from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
-from kurt2rt.experiments.study.checkpoints import run_checkpoints
+from kurt2rt.experiments.study.examination import run_checkpoints
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from simbridge.contracts.batch import CallbackMind
 from tests.experiments.helpers import ROBOT, STAGE, short_task
@@ -60,21 +59,21 @@ def plan_for(folder: Path, *pupils: Pupil) -> StudyPlan[Compared]:
 
 
 @pytest.fixture(scope="module")
-def done(tmp_path_factory: pytest.TempPathFactory) -> Comparison:
+def done(tmp_path_factory: pytest.TempPathFactory) -> tuple[Row, ...]:
     folder = tmp_path_factory.mktemp("comparison")
     plan = plan_for(folder, Pupil("rla-door"), Pupil("weighted-vote"), Pupil(BREAKING))
-    return read_comparison(carry_out(plan, folder))
+    return read_rows(carry_out(plan, folder))
 
 
-def outcome_of(done: Comparison, name: str) -> PupilOutcome:
-    (found,) = (each for each in done.rows if each.of[1].name == name)
-    return found.outcomes[0]
+def outcome_of(done: tuple[Row, ...], name: str) -> PupilOutcome:
+    (found,) = (each for each in done if each.of[1].name == name)
+    return found.rows[0]
 
 
-def test_each_pupil_is_examined_after_presses_and_at_the_end(done: Comparison) -> None:
-    assert [each.of[1].name for each in done.rows][:2] == [SHIPPED, "rla-door"]
-    for each_row in done.rows:
-        (outcome,) = each_row.outcomes
+def test_each_pupil_is_examined_after_presses_and_at_the_end(done: tuple[Row, ...]) -> None:
+    assert [each.of[1].name for each in done][:2] == [SHIPPED, "rla-door"]
+    for each_row in done:
+        (outcome,) = each_row.rows
         assert [each.presses for each in outcome.checkpoints[:-1]] == list(AFTER)
         assert outcome.lesson.presses == outcome.checkpoints[-1].presses
         assert outcome.failure or outcome.lesson.presses > AFTER[-1]
@@ -84,23 +83,11 @@ def test_each_pupil_is_examined_after_presses_and_at_the_end(done: Comparison) -
         assert all(len(each.drives) == 1 for each in outcome.checkpoints)
 
 
-def test_failure_of_a_learner_is_told_and_fails_the_exam(done: Comparison) -> None:
+def test_failure_of_a_learner_is_told_and_fails_the_exam(done: tuple[Row, ...]) -> None:
     failed = outcome_of(done, BREAKING)
     assert failed.failure == f"{BREAKING}: RuntimeError: four are too many"
     assert [each.passed for each in failed.checkpoints][-1] is False
     assert outcome_of(done, "weighted-vote").failure == ""
-
-
-def test_jobs_of_another_gate_have_another_provenance(tmp_path: Path) -> None:
-    plan = plan_for(tmp_path, Pupil("k-nn"), Pupil("k-nn", 0.5))
-    assert len({job.made_of for job in plan.jobs}) == 3
-    assert [job.stem for job in plan.jobs] == [
-        "rla/wall_following-3902",
-        "k-nn/wall_following-3902",
-        "k-nn-gate-0.5/wall_following-3902",
-    ]
-    assert plan.jobs[2].name == "wall_following, 5-NN with R (0.5), seed 3902"
-    assert plan.jobs[2].knowledge_name is None
 
 
 Known = tuple[list[TeachingEvent], tuple[Label, ...]]
@@ -146,23 +133,6 @@ def test_checkpoint_knows_what_so_many_presses_teach(tmp_path: Path) -> None:
         assert events == events_until_press(task, presses)
         assert labels == ()
     assert len(end[0]) > len(examined[-1][0])
-
-
-def test_checkpoints_that_are_not_reached_are_of_the_end(tmp_path: Path) -> None:
-    task = taught_by_named(short_task(4.0, 1.0), "superhuman")
-    team = Pupil("1-nn").new_team(task, ROBOT, 3903)
-    assert team is not None
-    given, examined = checkpoints_of(tmp_path, task, team)
-    assert given.result.presses < AFTER[-1]
-    assert examined[-1][1] == team.labels
-    assert len(examined) == (2 if given.result.presses > AFTER[0] else 1)
-
-
-@pytest.mark.parametrize(
-    ("text", "found"), [("k-nn", Pupil("k-nn")), ("k-nn=0.5", Pupil("k-nn", 0.5)), (SHIPPED, Pupil(SHIPPED))]
-)
-def test_pupil_of_a_text(text: str, found: Pupil) -> None:
-    assert Pupil.parse(text) == found
 
 
 @pytest.mark.parametrize("text", ["k-nn=wide", "rla=1", "no-such"])

@@ -22,11 +22,12 @@ from kurt2rt.experiments.doubt.study import (
     DoubtDrives,
     DoubtJob,
     DoubtOutcome,
-    all_tables,
     collision_table,
     make_plan,
     score_table,
+    tell,
 )
+from kurt2rt.experiments.study.study_plan import Group
 from tests.experiments.helpers import teach
 from tests.experiments.study.here import carry_out, parts_in
 
@@ -71,13 +72,6 @@ def test_wrong_ticks_are_lasting_misses_and_times_before_a_crash() -> None:
     assert np.flatnonzero(wrong).tolist() == [*range(500, 530), *range(1800, 2000)]
 
 
-def test_crossings_three_seconds_apart_are_two_questions() -> None:
-    driving = np.ones(TICKS, dtype=np.bool_)
-    assert question_ticks(pulses(100, 300, 1000), driving, 5.0) == [100, 1000]
-    driving[:1020] = False
-    assert question_ticks(pulses(100, 300, 1000), driving, 5.0) == [1020]
-
-
 def test_judge_score_counts_collisions_and_false_questions() -> None:
     scores = pulses(1000, 2500)
     result = judge_score([log(scores, collisions=(1100, 2100, 2505), seen=(True, True, False))], [scores], 5.0)
@@ -96,11 +90,11 @@ def test_threshold_for_a_budget_keeps_to_it() -> None:
 
 
 def test_tables_have_doubt_and_its_control() -> None:
-    told = [log(pulses(1000), collisions=(1100,), seen=(True,))]
-    first, second = score_table(told, 5.0).rows
+    told = log(pulses(1000), collisions=(1100,), seen=(True,))
+    first, second = score_table([told], 5.0).rows
     assert (first[0], first[2:]) == ("doubt", ("1 of 1", "1 of 1", "4.00", "0.00"))
     assert second[0] == "distance / R"
-    table = collision_table({DoubtResponse.TELLS: told, DoubtResponse.STANDS: [log(pulses())]}, 0.0)
+    table = collision_table([Group(DoubtResponse.TELLS, (told,)), Group(DoubtResponse.STANDS, (log(pulses()),))], 0.0)
     rows = table.rows
     assert table.note == "A robot that asks stands for as long as its question lasts."
     assert [row[:3] for row in rows] == [("only told", "1", "1"), ("stands", "0", "0")]
@@ -131,4 +125,4 @@ def test_robot_that_stands_at_its_doubt_collides_no_more_often(tmp_path: Path) -
     assert told.doubt.max() > 1.0
     assert stands.driving.sum() <= told.driving.sum()
     assert len(stands.collisions) <= len(told.collisions)
-    assert [len(table.rows) for table in all_tables(plan)] == [2, 2]
+    assert [len(table.rows) for table in tell(plan).tables] == [2, 2]

@@ -9,7 +9,7 @@ import pytest
 from behaviors.metrics.errands import ErrandsSettings
 from behaviors.metrics.streets import Side
 from behaviors.metrics.town import Street, Town
-from kurt2rt.experiments.navigation.goals import choose_goals, demonstrated_m
+from kurt2rt.experiments.navigation.exam import choose_goals, demonstrated_m
 from tests.behaviors.metrics.test_town import street, town
 
 __all__ = ["town"]

@@ -16,7 +16,7 @@ from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
 from kurt2rt.experiments.navigation import study as module
 from kurt2rt.experiments.navigation.guided_tour import guided_tour, navigation_settings
 from kurt2rt.experiments.navigation.study import ErrandsOutcome, NavigationJob, make_plan
-from kurt2rt.experiments.navigation.tables import all_tables, draw_errands
+from kurt2rt.experiments.navigation.tables import tell
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.journal.journal import Journal
@@ -58,13 +58,11 @@ def test_streets_and_errands_are_one_robots_knowledge(done: Done) -> None:
     assert len(ways) == done.outcome.mid_rlas >= 1
 
 
-def test_it_is_told_and_drawn(done: Done, tmp_path: Path) -> None:
-    tables = list(all_tables([done.outcome], navigation_settings(done.plan.about), "ordinary"))
-    assert len(tables) == 3
-    assert "ordinary" in tables[1].note
-    picture = tmp_path / "robot.png"
-    draw_errands(STAGE, "manhattan", done.outcome, picture)
-    assert imread(picture).shape[0] > 400
+def test_it_is_told_and_drawn(done: Done) -> None:
+    told = tell(done.plan)
+    assert len(told.tables) == 3
+    assert done.plan.about.teaching.profile.name in told.tables[1].note
+    assert imread(done.plan.results.folder / "errands-1.png").shape[0] > 400
 
 
 def test_a_task_without_errands_has_none_to_run() -> None:

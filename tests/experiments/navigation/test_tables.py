@@ -4,9 +4,9 @@ import re
 
 from kurt2rt.experiments.navigation.exam import GoalOutcome
 from kurt2rt.experiments.navigation.study import ErrandsOutcome
-from kurt2rt.experiments.navigation.tables import all_tables, robots_table, runs_table
+from kurt2rt.experiments.navigation.tables import all_tables
 from tests.experiments.navigation.test_goals import settings
-from tests.experiments.rows import MADE_OF
+from tests.experiments.rows import MADE_OF, titled
 
 
 def errand(
@@ -49,12 +49,6 @@ def robot(seed: int, *errands: GoalOutcome) -> ErrandsOutcome:
 GOOD = [errand()] * 20
 
 
-def test_goal_counts_if_short_and_without_collision() -> None:
-    mixed = robot(1, errand(), errand(1.4), errand(why_not="stuck"), errand(collisions=1))
-    assert mixed.good(1.3) == 1
-    assert len(mixed.reached) == 2
-
-
 def test_robots_that_nobody_has_seen_before_are_judged() -> None:
     outcomes = [robot(seed, *GOOD) for seed in range(100, 118)]
     outcomes += [robot(seed, *[errand()] * 17, *[errand(why_not="no way")] * 3) for seed in (118, 119)]
@@ -65,21 +59,19 @@ def test_robots_that_nobody_has_seen_before_are_judged() -> None:
     assert table.rows[2][2] == "0.90"
 
 
-def test_robots_that_settings_were_chosen_on_are_not() -> None:
-    table = next(all_tables([robot(1, *GOOD)], settings()))
-    assert {row[3] for row in table.rows} == {"not judged"}
-    assert "20" in table.note
-
-
 def test_runs_table_lists_goals_and_demonstrations() -> None:
-    table = runs_table([robot(1, errand(demonstrated=None), errand(demonstrated=2.0))], settings(), "slow")
+    table = titled(
+        all_tables([robot(1, errand(demonstrated=None), errand(demonstrated=2.0))], settings(), "slow"), "Goals"
+    )
     assert [row[0] for row in table.rows] == ["2 of 2"]
     assert re.findall(r"\d[\d.]*", table.note.split(":")[-1]) == ["2.0", "2.00", "1"]
     assert "slow" in table.note
 
 
 def test_each_robot_tells_what_it_did_not_reach_and_why() -> None:
-    table = robots_table([robot(3, errand(), errand(why_not="time"), errand(collisions=2))], settings())
+    table = titled(
+        all_tables([robot(3, errand(), errand(why_not="time"), errand(collisions=2))], settings()), "Each robot"
+    )
     assert table.rows[0][0] == "3"
     failed = [each.removeprefix("place 7: ") for each in table.rows[0][-1].split(", ")]
     assert failed[0] == "time"

@@ -21,14 +21,6 @@ from kurt2rt.experiments.study.study_plan import StudyPlan
 from tests.experiments.helpers import STAGE
 from tests.experiments.study.here import parts_in
 
-ISSUE = {  # RLAs at most, success at least by world, of generated worlds
-    "fleeing": (67, {"a": 0.9, "b": 0.8, "c": 0.8}, None),
-    "wall_following": (91, {"a": 0.95, "b": 0.9, "c": 0.9}, 0.9),
-    "circle": (35, {"one_object": 0.9}, None),
-    "circle_repositioned": (35, {"one_object": 0.9}, None),
-    "eight": (122, {"two_objects": 0.95}, None),
-}
-
 
 def planned(
     *tasks: str,
@@ -49,27 +41,6 @@ def changed_task(folder: Path, **keys: Any) -> str:
     path = folder / "mine.yaml"
     path.write_text(yaml.safe_dump(content | keys))
     return str(path)
-
-
-def test_the_shipped_experiments_ask_what_was_asked() -> None:
-    asked = {each.task: each for each in load_paper().experiments}
-    for task, (rlas, success, unseen) in ISSUE.items():
-        assert asked[task].asked.rlas_at_most == rlas
-        assert asked[task].asked.success_at_least == success
-        settings = asked[task].unseen
-        assert (settings.success_at_least if settings else None) == unseen
-    assert asked["streets"].asked.right_at_least == 0.95
-    assert asked["streets"].asked.collisions_below_per_10_min == 0.5
-    assert asked["streets"].asked.rlas_at_most == 135
-    assert sum(asked["streets"].paper_rlas_of.values()) == 135
-
-
-def test_everything_that_is_shipped_can_be_planned() -> None:
-    plan = planned(readings=("shipped", "plain"), seeds=(100,), extent=Extent(most_unseen=1))
-    tasks = [each.task for each in load_paper().experiments]
-    for reading in ("shipped", "plain"):
-        assert [each.task.name for each in plan.of(TaughtJob) if each.reading == reading] == tasks
-    assert len({job.file for job in plan.jobs}) == len(plan.jobs)
 
 
 WALL_FOLLOWING = next(each for each in load_paper().experiments if each.task == "wall_following")
@@ -103,33 +74,6 @@ def test_the_plain_reading_has_the_settings_of_its_own() -> None:
     assert plain.made_of.differences(shipped.made_of) == ["task"]
 
 
-def test_a_part_shortens_times_and_nothing_of_learning() -> None:
-    task, whole = first_of(planned("eight", extent=QUICK)).task, load_task("eight")
-    assert task.learning == taught_by(whole, load_teacher("ordinary")).learning
-    assert task.teaching.duration_s == pytest.approx(60.0, abs=1.0)
-    share = whole.teaching.supervised_s / whole.teaching.duration_s
-    assert task.teaching.supervised_s == pytest.approx(60.0 * share, abs=1.0)
-    assert task.exam.duration_s == 20.0
-
-
-def test_a_task_of_ones_own_is_done_and_nothing_is_asked_of_it(tmp_path: Path) -> None:
-    job = first_of(planned(changed_task(tmp_path, name="mine")))
-    assert (job.task.name, job.settings.asked.rlas_at_most) == ("mine", 0)
-
-
-@pytest.mark.parametrize("path", ["circle.yaml", "../tasks/circle.yaml"])
-def test_a_path_to_a_shipped_task_is_the_same_as_its_name(path: str) -> None:
-    by_path, by_name = planned(str(CONFIG_DIR / "tasks" / path), "circle"), planned("circle")
-    assert first_of(by_path).settings == first_of(by_name).settings
-    assert [(job.file, job.made_of) for job in by_path.jobs] == [(job.file, job.made_of) for job in by_name.jobs]
-
-
-def test_a_world_that_cannot_give_the_course_is_refused(tmp_path: Path) -> None:
-    exam = yaml.safe_load((CONFIG_DIR / "tasks" / "circle.yaml").read_text())["exam"]
-    with pytest.raises(SettingsError, match=r"mine: .*rounds: .*\bC .*\b0\b"):
-        planned(changed_task(tmp_path, name="mine", exam=exam | {"worlds": ["one_object", "c"]}))
-
-
 def test_two_tasks_of_one_name_are_refused(tmp_path: Path) -> None:
     with pytest.raises(StudyError, match=r"\bcircle\b"):
         planned("circle", changed_task(tmp_path))
@@ -142,13 +86,6 @@ def test_success_asked_in_a_world_without_exam_is_refused() -> None:
     wrong = paper.model_copy(update={"experiments": (circle.model_copy(update={"asked": asked}),)})
     with pytest.raises(StudyError, match=r"circle: .*\bb\b.*one_object"):
         planned(paper=wrong)
-
-
-def test_teacher_of_the_paper_teaches_every_task() -> None:
-    plan = planned("circle", "eight", paper=load_paper().model_copy(update={"teacher": "slow"}))
-    assert {each.task.teaching.profile.name for each in plan.jobs} == {"slow"}
-    assert first_of(plan).made_of != first_of(planned("circle")).made_of
-    assert {each.task.teaching.profile.name for each in planned("circle", "streets").jobs} == {"ordinary"}
 
 
 NOT_SEEN = range(100, 120)
@@ -202,7 +139,3 @@ def test_load_paper_names_file_and_key_of_missing_parts(changed: dict[str, Any],
     path.write_text(yaml.safe_dump(SHIPPED | changed))
     with pytest.raises(SettingsError, match=f"^{re.escape(str(path))}: {said}"):
         load_paper(str(path), STAGE)
-
-
-def test_load_paper_accepts_the_shipped_settings() -> None:
-    assert load_paper(factory=STAGE) == load_paper()

@@ -9,22 +9,13 @@ from rich.console import Console
 
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
-from kurt2rt.experiments.paper.settings import load_paper
-from kurt2rt.experiments.paper.tables import (
-    Examined,
-    Experiment,
-    GrowthStudy,
-    behaviour_table,
-    drive_table,
-    exam_table,
-    growth_table,
-    knowledge_table,
-    paper_targets_table,
-    unseen_table,
-)
+from kurt2rt.experiments.paper.settings import WHOLE, load_paper
+from kurt2rt.experiments.paper.study import Examined, Experiment, GrowthStudy, PaperExtent, PaperStudy
+from kurt2rt.experiments.paper.tables import all_tables, paper_targets_table, unseen_table
 from kurt2rt.experiments.study.jobs import ExaminedOutcome
+from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.study.table import Table, as_rich
-from tests.experiments.rows import FAILED, MADE_OF, NOT_JUDGED, PASSED, lesson, row
+from tests.experiments.rows import FAILED, MADE_OF, NOT_JUDGED, PASSED, lesson, row, titled
 
 
 def drive(
@@ -36,12 +27,18 @@ def drive(
 
 def robot(seed: int, rlas: int, *drives: DriveRow, rlas_of: dict[str, int] | None = None) -> ExaminedOutcome:
     counts = lesson(seed, rlas=rlas)
-    return ExaminedOutcome(made_of=MADE_OF, seed=seed, lesson=counts, rlas_of=rlas_of or {}, drives=drives)
+    own = tuple(each.model_copy(update={"seed": seed}) for each in drives)
+    return ExaminedOutcome(made_of=MADE_OF, seed=seed, lesson=counts, rlas_of=rlas_of or {}, drives=own)
 
 
 def summary_of(task: str, robots: Sequence[ExaminedOutcome]) -> Examined:
     settings = next(each for each in load_paper().experiments if each.task == task)
     return Examined(Experiment(settings, "shipped", load_task(task)), tuple(robots))
+
+
+def table_of(group: Examined, title: str, *growth: GrowthStudy) -> Table:
+    plan = StudyPlan(PaperExtent(load_paper(), WHOLE), (100,), ())
+    return titled(all_tables(PaperStudy(plan, (group,), growth)), title)
 
 
 def verdicts_of(table: Table) -> dict[str, tuple[str, ...]]:
@@ -50,14 +47,9 @@ def verdicts_of(table: Table) -> dict[str, tuple[str, ...]]:
 
 def test_knowledge_table_has_the_papers_numbers() -> None:
     summary = summary_of("wall_following", [robot(seed, rlas, drive()) for seed, rlas in ((1, 80), (2, 90), (3, 99))])
-    table = knowledge_table([summary], "what was taught")
+    table = table_of(summary, "What was taught")
     assert table.rows == (("wall following", "90", "85 to 94.5", "91", "345", "345", "41", "52", "3"),)
     assert "3 robots" in table.note
-
-
-def test_knowledge_table_leaves_unknown_times_out() -> None:
-    table = knowledge_table([summary_of("turn_left", [robot(1, 40, drive("manhattan"))])], "what was taught")
-    assert table.rows[0][3:6] == ("43", "345", "not told")
 
 
 def test_success_and_collisions_come_with_intervals() -> None:
@@ -66,7 +58,7 @@ def test_success_and_collisions_come_with_intervals() -> None:
         robot(2, 80, drive("a"), drive("b", passed=False, stuck=True, duration_s=150.0)),
         robot(3, 80, drive("a"), drive("b", collisions=0, duration_s=150.0)),
     ]
-    a, b = exam_table([summary_of("wall_following", robots)], "exams").rows
+    a, b = table_of(summary_of("wall_following", robots), "Exams without").rows
     # Wilson's interval of 3 of 3; Poisson's exact upper end of no collision in 1.5 times 10 min.
     assert a == ("wall following", "A", "3 of 3", "44% to 100%", "0", "0", "0.00", "0.00 to 2.46")
     # 3 collisions in 600 s: drawn robots alone have none, or 3 in 300 s; Poisson's upper end is 8.77.
@@ -79,7 +71,7 @@ def test_exam_table_has_one_row_of_generated_worlds() -> None:
         robot(101, 80, drive("a"), drive("rooms-101")),
     ]
     summary = summary_of("wall_following", robots)
-    *_, generated = exam_table([summary], "exams").rows
+    *_, generated = table_of(summary, "Exams without").rows
     assert generated[:3] == ("wall following", "3 of rooms-100..129", "2 of 3")
 
 
@@ -87,7 +79,7 @@ def test_unseen_table_names_world_and_robot() -> None:
     robots = [robot(seed, 80, *(drive(f"rooms-{room}") for room in range(seed, 130, 2))) for seed in (100, 101)]
     rows = unseen_table(summary_of("wall_following", robots)).rows
     assert len(rows) == 30
-    assert rows[0] == ("rooms-100", "100", "yes", "0", "8.0 (9.0) laps", "")
+    assert rows[0] == ("rooms-100", "100", "yes", "0", "8.0 of 9.0 laps", "")
     assert [row[1] for row in rows[:4]] == ["100", "101", "100", "101"]
 
 
@@ -99,7 +91,7 @@ def test_junctions_are_counted_over_all_robots() -> None:
         robot(1, 130, drive("manhattan", findings=driven(50, 50))),
         robot(2, 140, drive("manhattan", findings=driven(30, 26))),
     ]
-    table = drive_table([summary_of("streets", robots)], "drives")
+    table = table_of(summary_of("streets", robots), "Drives of")
     assert table.columns[-3:] == ("lateral deviation, m", "junctions right", "95 %")
     (row,) = table.rows
     assert row[:6] == ("streets", "manhattan", "8.0 laps", "9.0", "0, 0", "3.4%")
@@ -114,7 +106,7 @@ def test_comparisons_with_a_teacher_who_did_not_do_well_are_told() -> None:
         robot(3, 80, drive("a"), drive("rooms-102", judged=False, teacher={"progress": 0.0})),
     ]
     summary = summary_of("wall_following", robots)
-    table = drive_table([summary], "drives")
+    table = table_of(summary, "Drives of")
     assert table.columns[4] == "failed, nowhere"
     assert [row[4] for row in table.rows] == ["2, 0", "1, 1"]
     told = [row[4] for row in unseen_table(summary).rows]
@@ -130,7 +122,7 @@ def test_exams_without_a_measure_count_neither_way() -> None:
         robot(3, 80, drive("a", passed=False), drive("b", judged=False)),
     ]
     summary = summary_of("wall_following", robots)
-    a, b, _ = exam_table([summary], "exams").rows
+    a, b, _ = table_of(summary, "Exams without").rows
     assert (a[1], re.findall(r"\d+", a[2]), a[3]) == ("A", ["1", "2", "1"], "9% to 91%")
     assert (b[1], re.findall(r"\d+", b[2]), b[3]) == ("B", ["0", "0", "3"], "")
     assert [row[2] for row in unseen_table(summary).rows] == ["not judged"]
@@ -151,7 +143,7 @@ def test_behaviour_table_has_the_papers_parts() -> None:
     }
     of = {"straight_on": 70, "turn_left": 40}
     robots = [robot(seed, 110, drive("manhattan", findings=found), rlas_of=of) for seed in (1, 2)]
-    table = behaviour_table([summary_of("streets", robots)], "taught in common")
+    table = table_of(summary_of("streets", robots), "Taught in common")
     assert table.rows == (
         ("streets", "straight_on", "70", "70 to 70", "71", "10 of 10"),
         ("streets", "turn_left", "40", "40 to 40", "43", "6 of 8"),
@@ -189,14 +181,10 @@ def test_streets_are_judged_by_junctions_and_collisions(right: int, collisions: 
     assert said["collisions in 10 min in manhattan"] == ("below 0.5", f"{collisions:.2f}", verdicts[1])
 
 
-def test_nothing_is_asked_of_tasks_taught_alone() -> None:
-    table = paper_targets_table([summary_of("turn_right", [robot(1, 20, drive("manhattan"))])], "what was asked")
-    assert table.rows == ()
-    assert table.note
-
-
 def test_growth_is_told_at_the_times_of_the_study() -> None:
     curves = {radius: [tuple(range(seed, seed + 130)) for seed in (1, 2, 3)] for radius in (150.0, 300.0)}
-    table = growth_table(GrowthStudy("plain", "wall_following", curves))
+    table = table_of(
+        summary_of("circle", [robot(1, 20, drive())]), "RLAs against", GrowthStudy("plain", "wall_following", curves)
+    )
     assert table.columns == ("R", "robots", "60 s", "120 s")
     assert table.rows == (("150", "3", "61", "121"), ("300", "3", "61", "121"))

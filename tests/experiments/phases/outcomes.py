@@ -6,11 +6,10 @@ from typing import Any
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
+from kurt2rt.experiments.phases.results import PhasesStudy, Stage
 from kurt2rt.experiments.phases.steps import CORRUPTED, JUDGED, PHASE_1, TITLES, UNTAUGHT
 from kurt2rt.experiments.phases.study import PhasesTask, StageOutcome, TeachingOutcome
-from kurt2rt.experiments.phases.tables import PhasesStudy
 from kurt2rt.experiments.study.study_plan import StudyPlan
-from kurt2rt.experiments.study.table import Table
 from tests.experiments.rows import FAILED, PASSED, row
 
 TASK = load_task("wall_following")
@@ -51,17 +50,16 @@ def stage(name: str, *exams: DriveRow, taught: TeachingOutcome | None = None) ->
 def study(robots: int = 2, task: TaskSettings = TASK, **changed: Sequence[StageOutcome]) -> PhasesStudy:
     """All stages of some robots, alike but for those that are given (with _ for - in their names)."""
     stages = {
-        name: tuple(
-            stage(name, taught=None if name in (UNTAUGHT, PHASE_1, CORRUPTED, JUDGED) else teaching())
-            for _ in range(robots)
+        name: Stage(
+            name,
+            tuple(
+                stage(name, taught=None if name in (UNTAUGHT, PHASE_1, CORRUPTED, JUDGED) else teaching())
+                for _ in range(robots)
+            ),
         )
         for name in TITLES
     }
-    stages |= {name.replace("_", "-"): tuple(each) for name, each in changed.items()}
+    named = {name.replace("_", "-"): tuple(each) for name, each in changed.items()}
+    stages |= {name: Stage(name, each) for name, each in named.items()}
     plan = StudyPlan(PhasesTask(task, quick=False), tuple(range(100, 100 + robots)), ())
-    return PhasesStudy(plan, stages, ((exam(),),) * robots)
-
-
-def cells(table: Table, place: int) -> dict[str, str]:
-    """Return a row of a table by the names of its columns."""
-    return dict(zip(table.columns, table.rows[place], strict=True))
+    return PhasesStudy(plan, stages, tuple(exam(seed=seed) for seed in plan.seeds))

@@ -2,8 +2,6 @@
 
 from collections import Counter
 
-import pytest
-
 from behaviors.repertoire import primitive_speeds
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.settings import NAMES, load_critic
@@ -12,7 +10,7 @@ from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated, Teach
 from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.phases.corruption import corrupt, critic_lessons, shuffled
+from kurt2rt.experiments.phases.controls import corrupt, critic_lessons, shuffled
 from kurt2rt.experiments.phases.steps import CRITIC_ALONE, PHASE_4, REWARDS, SHUFFLED, steps_of
 
 PERIOD_S = 0.01
@@ -50,16 +48,6 @@ def test_the_share_that_was_asked_for_gets_another_action() -> None:
     system(*SET, *wrong)
 
 
-def test_the_same_seed_spoils_the_same_and_another_one_others() -> None:
-    rlas = system(*SET).rlas
-    assert list(corrupt(rlas, ACTIONS, 0.18, 7, purpose="repair")) == list(
-        corrupt(rlas, ACTIONS, 0.18, 7, purpose="repair")
-    )
-    assert list(corrupt(rlas, ACTIONS, 0.18, 7, purpose="repair")) != list(
-        corrupt(rlas, ACTIONS, 0.18, 8, purpose="repair")
-    )
-
-
 def test_corrupt_differs_by_purpose() -> None:
     rlas, steps = system(*SET).rlas, {step.name: step for step in steps_of(load_task("wall_following"))}
 
@@ -73,11 +61,6 @@ def test_corrupt_differs_by_purpose() -> None:
         assert len(shown) == len(examined) == 9
         assert len(shown & examined) <= 1  # what little is alike is so by chance
         assert examined == wrong_at(SHUFFLED, seed) == wrong_at(REWARDS, seed)
-
-
-@pytest.mark.parametrize(("rlas", "wrong"), [(0, 0), (1, 1), (2, 1), (11, 2)])
-def test_of_a_small_set_at_least_one_is_wrong(rlas: int, wrong: int) -> None:
-    assert len(list(corrupt(system(*SET[:rlas]).rlas, ACTIONS, 0.18, 1, purpose="repair"))) == wrong
 
 
 def test_wrong_actions_are_motor_primitives_of_the_repertoire() -> None:

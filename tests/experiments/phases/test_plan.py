@@ -60,19 +60,6 @@ def test_changed_step_changes_following_steps_only() -> None:
     assert changed == {PHASE_5, LONG_RUN}
 
 
-def test_changed_phase_4_changes_all_critics() -> None:
-    before = {step_of(job): job.made_of for job in planned().jobs}
-    after = {step_of(job): job.made_of for job in planned(with_phases(critic_s=77.0)).jobs}
-    assert before[CRITIC_ALONE].differences(after[CRITIC_ALONE]) == ["task"]
-    assert before[REWARDS] == after[REWARDS]
-
-
-def test_quick_is_every_step_for_seconds() -> None:
-    quick = planned(quick=True)
-    assert [len(wave) for wave in quick.waves] == [len(wave) for wave in planned().waves]
-    assert sum(job.robot_time_s for job in quick.jobs) < 1200
-
-
 @pytest.mark.parametrize("robot", ["school", "turtlebot"])
 def test_quick_critic_of_another_robot_has_its_sensors(robot: str) -> None:
     settings, task = load_robot(robot), load_task(f"{robot}/wall_following")

@@ -6,54 +6,14 @@ from config.settings import SettingsError
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.phases.steps import (
-    ASKS,
     BLAME_BY_CHANCE,
-    BRANCHES,
-    CORRUPTED,
-    CRITIC_ALONE,
-    INTACT,
-    JUDGED,
-    PATH,
     PHASE_2,
-    PHASE_4,
     REWARDS,
-    SHUFFLED,
-    TITLES,
-    UNKNOWN_BAD,
     steps_of,
 )
 
 TASK = load_task("wall_following")
 STEPS = {step.name: step for step in steps_of(TASK)}
-
-
-def test_each_step_stands_behind_those_it_needs() -> None:
-    done = {PHASE_2}
-    for step in steps_of(TASK):
-        assert done.issuperset(step.needs)
-        done.add(step.name)
-    assert done > set(BRANCHES) | set(PATH[2:])
-    assert done <= set(TITLES)
-
-
-def test_repairs_share_set_place_and_time() -> None:
-    repairs = [STEPS[name] for name in (ASKS, UNKNOWN_BAD, BLAME_BY_CHANCE, REWARDS)]
-    for step in (*repairs, STEPS[CORRUPTED], STEPS[CRITIC_ALONE], STEPS[SHUFFLED]):
-        assert (step.after, step.corrupted) == (PHASE_2, 0.18)
-        assert step.worlds == STEPS[CORRUPTED].worlds
-    plans = [step.plan for step in repairs if step.plan]
-    assert {(plan.duration_s, plan.purpose, plan.reposition_every_s) for plan in plans} == {
-        (plans[0].duration_s, "repair", 15.0)
-    }
-    assert {(plan.rescues_who_asks, plan.rescue_after_s) for plan in plans} == {(True, None)}
-    assert STEPS[CRITIC_ALONE].plan == STEPS[SHUFFLED].plan == STEPS[INTACT].plan
-
-
-def test_a_critic_is_taken_from_this_robot_s_phase_4() -> None:
-    assert {name for name, step in STEPS.items() if step.critic != "own"} == {*(JUDGED, CRITIC_ALONE, SHUFFLED, INTACT)}
-    assert STEPS[JUDGED].plan is None
-    assert (STEPS[JUDGED].corrupted, STEPS[JUDGED].mistakes) == (STEPS[REWARDS].corrupted, STEPS[REWARDS].mistakes)
-    assert all(PHASE_4 in STEPS[name].needs for name in (CRITIC_ALONE, SHUFFLED, INTACT))
 
 
 def test_blame_by_chance_waits_for_what_it_is_to_be_as_often_as() -> None:

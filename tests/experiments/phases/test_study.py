@@ -10,25 +10,23 @@ from matplotlib.image import imread
 from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated, TeachingEvent
 from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.phases.figures import draw_figures
+from kurt2rt.experiments.phases.results import PhasesStudy, read_study
 from kurt2rt.experiments.phases.steps import (
     CORRUPTED,
     CRITIC_ALONE,
     JUDGED,
     LONG_RUN,
-    PHASE_1,
-    PHASE_2,
     PHASE_3,
     PHASE_4,
     SHUFFLED,
     TITLES,
 )
 from kurt2rt.experiments.phases.study import PhasesTask, make_plan
-from kurt2rt.experiments.phases.tables import PhasesStudy, all_tables, read_study, reasons_not_to_judge, write_phases
-from kurt2rt.experiments.study.figures import SavedFigure
+from kurt2rt.experiments.phases.tables import tell
 from kurt2rt.experiments.study.pool import PoolProgress
 from kurt2rt.experiments.study.results import StudyError
 from kurt2rt.experiments.study.study_plan import StudyPlan
+from kurt2rt.experiments.study.table import Told
 from kurt2rt.knowledge.journal.loading import read_lessons
 from tests.experiments.helpers import ROBOT
 from tests.experiments.study.here import carry_out, parts_in
@@ -43,7 +41,7 @@ class Tiny:
 
     folder: Path
     study: PhasesStudy
-    pictures: list[SavedFigure]
+    told: Told
 
     @property
     def plan(self) -> StudyPlan[PhasesTask]:
@@ -66,10 +64,8 @@ def tiny_plan(folder: Path) -> StudyPlan[PhasesTask]:
 @pytest.fixture(scope="module")
 def tiny(tmp_path_factory: pytest.TempPathFactory) -> Tiny:
     folder = tmp_path_factory.mktemp("phases")
-    study = read_study(carry_out(tiny_plan(folder), folder))
-    pictures = list(draw_figures(study, folder))
-    write_phases(study, pictures, COMMAND, folder / "report.html")
-    return Tiny(folder, study, pictures)
+    plan = carry_out(tiny_plan(folder), folder)
+    return Tiny(folder, read_study(plan), tell(plan, COMMAND))
 
 
 def file_of(step: str) -> str:
@@ -83,40 +79,23 @@ def lessons(tiny: Tiny, step: str) -> list[TeachingEvent]:
 def test_phases_run_stores_stages_and_knowledge(tiny: Tiny) -> None:
     assert set(tiny.study.stages) == set(TITLES)
     assert all(job.knowledge.is_file() for job in tiny.plan.jobs)
-    (long_run,) = tiny.study.stages[LONG_RUN]
+    (long_run,) = tiny.study.stages[LONG_RUN].rows
     assert long_run.exams == ()
 
 
-def test_phase_1_lessons_begin_those_of_phase_2(tiny: Tiny) -> None:
-    (one,), (two,) = tiny.study.stages[PHASE_1], tiny.study.stages[PHASE_2]
-    assert (
-        0
-        < one.rlas
-        <= two.rlas
-        == len(lessons(tiny, PHASE_2)) - sum(not isinstance(event, RlaCreated) for event in lessons(tiny, PHASE_2))
-    )
-
-
-def test_the_corrupted_set_has_the_same_rlas_and_knows_otherwise(tiny: Tiny) -> None:
-    (before,), (after,) = tiny.study.stages[PHASE_2], tiny.study.stages[CORRUPTED]
-    assert after.rlas == before.rlas
-    assert after.knowledge_hash != before.knowledge_hash
-    assert after.teaching is None
-
-
 def test_the_critic_of_phase_4_goes_along_to_the_branches(tiny: Tiny) -> None:
-    (taught,) = tiny.study.stages[PHASE_4]
+    (taught,) = tiny.study.stages[PHASE_4].rows
     assert taught.appraisals > 0
     assert taught.teaching is not None
     assert sum(minute.appraisals for minute in taught.teaching.workload) > 0
     for step in (CRITIC_ALONE, SHUFFLED):
-        (branch,) = tiny.study.stages[step]
+        (branch,) = tiny.study.stages[step].rows
         assert branch.appraisals == taught.appraisals
         assert any(isinstance(event, RlaCreated) and event.rla.level == CRITIC for event in lessons(tiny, step))
 
 
 def test_phase_4_changes_the_critic_alone(tiny: Tiny) -> None:
-    (before,), (after,) = tiny.study.stages[PHASE_3], tiny.study.stages[PHASE_4]
+    (before,), (after,) = tiny.study.stages[PHASE_3].rows, tiny.study.stages[PHASE_4].rows
     assert (after.rlas, after.exams) == (before.rlas, before.exams)
     brought = lessons(tiny, PHASE_4)[len(lessons(tiny, PHASE_3)) :]
     assert brought
@@ -141,10 +120,10 @@ def test_interrupted_run_completes_to_equal_results(tiny: Tiny, tmp_path: Path) 
 
 
 def test_the_critic_is_judged_where_nothing_is_taught(tiny: Tiny) -> None:
-    (judged,) = tiny.study.stages[JUDGED]
+    (judged,) = tiny.study.stages[JUDGED].rows
     assert judged.teaching is None
     assert judged.exams == ()
-    assert judged.rlas == tiny.study.stages[CORRUPTED][0].rlas
+    assert judged.rlas == tiny.study.stages[CORRUPTED].rows[0].rlas
     assert 0 < sum(each.ticks for each in judged.judgements) <= 100
 
 
@@ -160,18 +139,11 @@ def test_missing_knowledge_and_results_are_named(tmp_path: Path) -> None:
 def test_report_holds_all_figures_and_tables(tiny: Tiny) -> None:
     text = (tiny.folder / "report.html").read_text(encoding="utf-8")
     page = Page(text)
-    assert [each.path.name for each in tiny.pictures] == [
-        "phases.png",
-        "load.png",
-        "agreement.png",
-        "branches.png",
-        "intact.png",
-    ]
-    assert page.images == [each.title for each in tiny.pictures]
+    drawn = [tiny.folder / f"{name}.png" for name in ("phases", "load", "agreement", "branches", "intact")]
     pictures = [base64.b64decode(address.removeprefix("data:image/png;base64,")) for address in page.addresses]
-    assert pictures == [each.path.read_bytes() for each in tiny.pictures]
-    assert all(min(imread(each.path).shape[:2]) > 400 for each in tiny.pictures)
-    titles = [table.title for table in all_tables(tiny.study, list(reasons_not_to_judge(tiny.plan)))]
+    assert pictures == [path.read_bytes() for path in drawn]
+    assert all(min(imread(path).shape[:2]) > 400 for path in drawn)
+    titles = [table.title for table in tiny.told.tables]
     assert len(titles) == len(set(titles))
     assert all(f"<caption>{title}</caption>" in text for title in titles)
     assert page.tags.count("table") == len(titles) + 1  # and that of the settings

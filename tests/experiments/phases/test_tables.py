@@ -6,9 +6,10 @@ from dataclasses import replace
 import pytest
 
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
+from kurt2rt.experiments.phases.controls import Judgement
+from kurt2rt.experiments.phases.results import Stage, interventions, paired, score_of, verdicts
 from kurt2rt.experiments.phases.steps import (
     ASKS,
-    BRANCHES,
     CORRUPTED,
     CRITIC_ALONE,
     INTACT,
@@ -19,53 +20,38 @@ from kurt2rt.experiments.phases.steps import (
     TITLES,
     UNKNOWN_BAD,
 )
-from kurt2rt.experiments.phases.study import Judgement
-from kurt2rt.experiments.phases.tables import (
-    CriticScore,
-    critic_table,
-    exam_table,
-    interventions,
-    long_run_table,
-    paired,
-    phases_targets_table,
-    score_of,
-    teachers_table,
-    verdicts,
-    words_of_controls,
-    workload_table,
-)
+from kurt2rt.experiments.phases.tables import all_tables, words_of_controls
 from kurt2rt.experiments.study.targets import Verdict
-from tests.experiments.phases.outcomes import TASK, cells, exam, stage, study, teaching
+from tests.experiments.phases.outcomes import TASK, exam, stage, study, teaching
+from tests.experiments.rows import cells, titled
 
 
 def test_robots_are_compared_with_themselves_world_by_world() -> None:
     before = [stage("x", exam("a", progress=float(n)), exam("c", collisions=2, passed=False)) for n in range(10)]
     after = [stage("y", exam("c"), exam("a", progress=n + 1.0)) for n in range(10)]
-    found = {(each.world, each.measure.name): each for each in paired(before, after)}
+    same = Stage("x", tuple(before))
+    found = {(each.world, each.measure.name): each for each in paired(same, Stage("y", tuple(after)))}
     progress = found["a", "progress"]
     assert (progress.before, progress.after) == (4.5, 5.5)
     assert progress.difference == (1.0, 1.0, 1.0)  # robots differ by 10, and the change is the same in all
-    assert (progress.better, progress.worse) == (10, 0)
+    assert (progress.robots(+1), progress.robots(-1)) == (10, 0)
     collisions = found["c", "collisions in 10 min"]
-    assert (collisions.before, collisions.after, collisions.better) == (4.0, 0.0, 10)
-    assert collisions.surely_better
-    assert not collisions.surely_worse
-    assert found["c", "success"].surely_better
-    for each in paired(before, before):
-        assert (each.surely_better, each.surely_worse, each.better, each.worse) == (False, False, 0, 0)
+    assert (collisions.before, collisions.after, collisions.robots(+1)) == (4.0, 0.0, 10)
+    assert collisions.surely == found["c", "success"].surely == "better"
+    for each in paired(same, same):
+        assert (each.surely, each.robots(+1), each.robots(-1)) == ("", 0, 0)
 
 
 def test_score_of_measures_precision_and_recall() -> None:
     told = [(-1, -1, 30), (-1, 0, 10), (0, -1, 20), (1, 1, 5), (1, None, 15), (0, 0, 20)]
     score = score_of([Judgement(judged=judged, said=said, ticks=ticks) for judged, said, ticks in told])
-    assert (score.precision, score.recall, score.silent) == (0.6, 0.75, 0.15)
-    assert score.agreement == (0.75 + 0.25) / 2
-    assert score_of([]) == CriticScore(None, None, None, None)
+    assert list(score.values()) == [0.6, 0.75, (0.75 + 0.25) / 2, 0.15]
+    assert set(score_of([]).values()) == {None}
 
 
 def test_every_stage_has_a_row_for_each_world() -> None:
     robots = [stage(PHASE_2, exam(), exam("c", passed=False, collisions=3), taught=teaching()) for _ in range(2)]
-    table = exam_table("t", PATH, study(phase_2=robots), "")
+    table = titled(all_tables(study(phase_2=robots), []), "Phase by phase")
     named = [row[0] for row in table.rows if row[0]]
     assert named == [TITLES[name] for name in PATH]
     second = cells(table, len(PATH) - 4 + 1)  # the row below phase 2 in A
@@ -73,34 +59,23 @@ def test_every_stage_has_a_row_for_each_world() -> None:
     assert second["collisions in 10 min"] == "6.00"
 
 
-def test_every_branch_is_beside_the_others() -> None:
-    table = exam_table("t", BRANCHES, study(), "")
-    assert [row[0] for row in table.rows] == [TITLES[name] for name in BRANCHES]
-
-
-def test_nothing_is_judged_where_there_is_a_reason_not_to() -> None:
-    table = phases_targets_table(study(), ["Too few."])
-    assert {row[-1] for row in table.rows} == {"not judged"}
-    assert table.note.endswith("Too few.")
-    judged = phases_targets_table(study(), [])
-    assert {row[-1] for row in judged.rows} <= {"met", "MISSED"}
-
-
 def test_teachers_table_names_failed_seeds() -> None:
-    told = replace(study(3), teachers=((exam(),), (exam(passed=False, collisions=1),), (exam(progress=9.0),)))
-    row = cells(teachers_table(told), 0)
+    told = replace(
+        study(3), teachers=(exam(seed=100), exam(passed=False, collisions=1, seed=101), exam(progress=9.0, seed=102))
+    )
+    row = cells(titled(all_tables(told, []), "How the teacher"), 0)
     assert (row["without fault"], row["seeds that failed"], row["progress"]) == ("2 of 3", "101", "8.0 laps")
 
 
 def test_a_robot_that_was_stuck_once_or_more_counts_once() -> None:
     robots = [stage(PHASE_2, exam(rescues=rescues), taught=teaching()) for rescues in (0, 1, 4)]
-    found = cells(exam_table("t", (PHASE_2,), study(phase_2=robots), ""), 0)
+    found = cells(titled(all_tables(study(3, phase_2=robots), []), "Phase by phase"), 2)
     assert (found["stuck"], found["success"]) == ("2", "3 of 3")
 
 
 def test_why_somebody_had_to_come_is_told_apart() -> None:
     robots = [stage(LONG_RUN, taught=teaching(7200.0, collisions=1, rescues=3, unknown_rescues=2)) for _ in range(2)]
-    row = cells(long_run_table(study(long_run=robots)), 0)
+    row = cells(titled(all_tables(study(long_run=robots), []), "Interventions"))
     assert (row["hours"], row["collisions"], row["stuck"], row["unknown for long"]) == ("4.0", "2", "2", "4")
     assert row["an hour"] == "2.00"
 
@@ -117,17 +92,17 @@ def test_a_control_that_equals_another_is_said_to() -> None:
 
 
 def test_a_critic_of_which_too_little_was_heard_says_so() -> None:
-    table = critic_table(study(2))
+    table = titled(all_tables(study(2), []), "The critic")
     row = cells(table, 0)
     assert (row["agreement at its end"], row["trusted"], row["undone"]) == ("0.90", "2 of 2", "1")
     assert [bool(each[2]) for each in table.rows] == [True, *[False] * 4]  # of phase 4 alone
     silent = study(phase_4=[stage("phase-4", taught=teaching(agreement=(None, None))) for _ in range(2)])
-    assert not re.search(r"\d", cells(critic_table(silent), 0)["agreement at its end"])
+    assert not re.search(r"\d", cells(titled(all_tables(silent, []), "The critic"))["agreement at its end"])
 
 
 def test_the_load_is_told_in_all_and_in_a_minute() -> None:
-    table = workload_table("t", (REWARDS,), study(rewards=[stage(REWARDS, taught=teaching(blame=30))]))
-    row = cells(table, 0)
+    table = titled(all_tables(study(1, rewards=[stage(REWARDS, taught=teaching(blame=30))]), []), "What that took")
+    row = cells(table, 3)
     assert (row["lasts, s"], row["answers"], row["corrections"]) == ("120", "4 (2.0)", "6 (3.0)")
     assert (row["rewards"], row["-1"], row["withdrawn"]) == ("30 (15.0)", "30", "3")
 

@@ -71,36 +71,14 @@ class Watched:
         return [wrong.layer for wrong in self.watching.wrong]
 
 
-def test_route_monitor_right_decision_has_no_fault() -> None:
-    watched = Watched()
-    for turn in (0, 1, -1) * 6:
-        watched.junction(turn, turn, turn, turn)
-    watched.watching.end()
-    assert watched.blamed == []
-
-
-def test_route_monitor_wrong_drive_is_basic() -> None:
-    watched = Watched()
-    watched.junction(1, 1, 0, 0)
-    watched.junction(0, 0, 0, 0)
-    assert watched.blamed == ["basic"]
-    (wrong,) = watched.watching.wrong
-    assert (wrong.leg, wrong.x_m, wrong.y_m) == (0, 1.0, 2.0)
-
-
-def test_route_monitor_wrong_choice_is_mid() -> None:
+@pytest.mark.parametrize(
+    ("junction", "layers"), [((1, 1, 1, 1), []), ((1, -1, -1, -1), ["mid"]), ((1, 1, 0, 0), ["basic"])]
+)
+def test_wrong_choice_is_mid_and_wrong_drive_is_basic(junction: tuple[int, int, int, int], layers: list[Layer]) -> None:
     watched = Watched()
     watched.junction(0, 0, 0, 0)
-    watched.junction(1, -1, -1, -1)
-    assert watched.blamed == ["mid"]
-
-
-@pytest.mark.parametrize("noticed", [None, 1])
-def test_route_monitor_missed_junction_is_symbols(noticed: int | None) -> None:
-    watched = Watched()
-    watched.junction(0, 0, 0, noticed)
-    watched.junction(1, -1, -1, -1)
-    assert watched.blamed == ["symbols"]
+    watched.junction(*junction)
+    assert watched.blamed == layers
 
 
 def test_route_monitor_changed_command_is_symbols() -> None:

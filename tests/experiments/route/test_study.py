@@ -1,6 +1,5 @@
 """Route study on the simulated robot: streets, route, tables, figures and report."""
 
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,22 +9,21 @@ from matplotlib.image import imread
 from kurt2rt.core.rla.rla import MID, Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.route import study as module
-from kurt2rt.experiments.route.figures import draw_figures
 from kurt2rt.experiments.route.study import (
     BasicJob,
     RouteJob,
+    RouteOutcome,
     RouteTasks,
     basic_file,
     basic_task_of,
     lesson_plans,
     make_plan,
 )
-from kurt2rt.experiments.route.tables import RouteStudy, all_tables, read_study, write_routes
-from kurt2rt.experiments.study.figures import SavedFigure
+from kurt2rt.experiments.route.tables import tell
 from kurt2rt.experiments.study.pool import PoolProgress
-from kurt2rt.experiments.study.results import Results, StudyError
-from kurt2rt.experiments.study.runner import missing_time_s
+from kurt2rt.experiments.study.results import StudyError
 from kurt2rt.experiments.study.study_plan import StudyPlan
+from kurt2rt.experiments.study.table import Told
 from kurt2rt.knowledge.journal.fold import fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.study.here import carry_out, parts_in
@@ -50,44 +48,39 @@ def plan_in(folder: Path, basic_folder: Path | None = None, teaching_s: float = 
 @dataclass(frozen=True)
 class Done:
     folder: Path
-    study: RouteStudy
-    pictures: list[SavedFigure]
+    plan: StudyPlan[RouteTasks]
+    told: Told
     progress: list[PoolProgress]
+
+    @property
+    def outcomes(self) -> list[RouteOutcome]:
+        return [job.results.read(job, RouteOutcome) for job in self.plan.of(RouteJob)]
 
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
     folder, progress = tmp_path_factory.mktemp("routes"), list[PoolProgress]()
-    study = read_study(carry_out(plan_in(folder), folder, progress.append))
-    pictures = list(draw_figures(study, parts_in()["factory"], folder))
-    write_routes(study, pictures, COMMAND, folder / "report.html")
-    return Done(folder, study, pictures, progress)
+    plan = carry_out(plan_in(folder), folder, progress.append)
+    return Done(folder, plan, tell(plan, COMMAND), progress)
 
 
 def test_route_run_teaches_the_streets_once(done: Done) -> None:
-    (basic,) = done.study.plan.of(BasicJob)
+    (basic,) = done.plan.of(BasicJob)
     assert basic.knowledge.is_file()
-    (taught,) = done.study.routes[0].outcomes
+    (taught,) = done.outcomes
     assert taught.lesson.teaching_s == 8.0
     assert taught.mid_rlas == taught.mid_asks > 0
     assert done.progress[-1].done_s == 10.0 + 8.0 + 3.0
 
 
 def test_route_run_stores_the_mid_level(done: Done) -> None:
-    job, outcome = done.study.plan.of(RouteJob)[0], done.study.routes[0].outcomes[0]
+    job, outcome = done.plan.of(RouteJob)[0], done.outcomes[0]
     with Journal.read_only(job.knowledge) as journal:
         system = fold_journal(journal, job.task.learning.radius)
         assert journal.binding.system == "streets"
         assert journal.binding.levels[MID].feature_names[0] == "symbol 1"
     assert (len(system.rlas_at(MID)), len(system.rlas)) == (outcome.mid_rlas, outcome.lesson.rlas)
     assert system.knowledge_hash() == outcome.lesson.knowledge_hash
-
-
-def test_route_run_repeated_does_nothing(done: Done) -> None:
-    results = Results(done.folder)
-    assert missing_time_s(plan_in(done.folder).waves, results) == 0.0
-    with pytest.raises(StudyError, match=re.escape(f"{done.folder}: ")):
-        results.missing(plan_in(done.folder, teaching_s=13.0).jobs)
 
 
 def test_lesson_begun_again_goes_on_with_its_phases() -> None:
@@ -99,7 +92,7 @@ def test_lesson_begun_again_goes_on_with_its_phases() -> None:
 
 
 def test_basic_folder_skips_the_streets(done: Done, tmp_path: Path) -> None:
-    folder = done.study.plan.of(BasicJob)[0].knowledge.parent
+    folder = done.plan.of(BasicJob)[0].knowledge.parent
     plan = plan_in(tmp_path, folder)
     assert {each.basic for each in plan.of(RouteJob)} == {folder / "streets-1.knowledge"}
     assert len(plan.jobs) == 1
@@ -111,10 +104,9 @@ def test_basic_folder_skips_the_streets(done: Done, tmp_path: Path) -> None:
 
 
 def test_pictures_and_report_show_each_length(done: Done) -> None:
-    assert [each.path.name for each in done.pictures] == ["route-4.png"]
-    assert all(imread(each.path).std() > 0.01 for each in done.pictures)
+    assert imread(done.folder / "route-4.png").std() > 0.01
     text = (done.folder / "report.html").read_text(encoding="utf-8")
-    assert Page(text).images == [each.title for each in done.pictures]
+    assert Page(text).images == ["Routes of 4 decisions"]
     assert COMMAND in text
     assert "<code>kurt2rt knowledge show</code>" in text
-    assert all(table.title in text for table in all_tables(done.study))
+    assert all(table.title in text for table in done.told.tables)

@@ -3,26 +3,21 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.experiments.search.score import RobotScore, highest_score, robot_score, score_of
+from kurt2rt.experiments.search.plan import highest_score, score_of
 from kurt2rt.experiments.search.settings import Objective
 from kurt2rt.experiments.study.jobs import ExaminedOutcome
 from tests.examples import examples
-from tests.experiments.rows import MADE_OF, judged, lesson
+from tests.experiments.rows import FAILED, MADE_OF, PASSED, lesson, row
 
 PRESSES: Objective = "passed_then_presses"
 COLLISIONS: Objective = "passed_then_presses_and_collisions"
 RLAS: Objective = "passed_then_rlas"
 
 
-def robot(passed: int, presses: int = 10, exams: int = 3, rlas: int = 50, collisions: int = 0) -> RobotScore:
-    return RobotScore(passed, exams, presses, collisions, rlas)
-
-
-def test_exam_without_a_verdict_counts_as_not_passed() -> None:
-    drives = (judged(), judged(collisions=1), judged(teachers_laps=0.0))
-    result = ExaminedOutcome(made_of=MADE_OF, seed=3, lesson=lesson(3, rlas=80), rlas_of={}, drives=drives)
-    assert robot_score(result) == RobotScore(1, 3, result.lesson.presses, result.lesson.collisions, rlas=80)
-    assert robot_score(result).passed_share == 1 / 3
+def robot(passed: int, presses: int = 10, exams: int = 3, rlas: int = 50, collisions: int = 0) -> ExaminedOutcome:
+    drives = tuple(row(verdict=PASSED if place < passed else FAILED) for place in range(exams))
+    counts = lesson(1, presses=presses, collisions=collisions, rlas=rlas)
+    return ExaminedOutcome(made_of=MADE_OF, seed=1, lesson=counts, rlas_of={}, drives=drives)
 
 
 def test_score_prefers_exams_then_little_effort() -> None:

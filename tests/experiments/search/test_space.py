@@ -32,19 +32,6 @@ def test_values_change_their_keys_alone(tmp_path: Path) -> None:
     assert changed.model_copy(update={"radius": shipped.radius, "weights": shipped.weights}) == shipped
 
 
-def test_changes_are_those_that_set_takes(tmp_path: Path) -> None:
-    changes = space(tmp_path).changes({"learning.radius": 444.0, "learning.weights.0.weight": 0.7})
-    assert changes["learning.radius"] == 444.0
-    assert changes["learning.weights"][0] == {"weight": 0.7, "features": ["s15"]}
-    assert list(changes) == ["learning.radius", "learning.weights"]
-
-
-def test_key_with_a_default_that_the_file_leaves_out_is_found(tmp_path: Path) -> None:
-    of_task = space(tmp_path, {"key": "teaching.lesson_speed", "low": 0.3, "high": 1.0}, teacher="answers_only")
-    assert of_task.shipped == {"teaching.lesson_speed": 1.0}
-    assert of_task.task({"teaching.lesson_speed": 0.5}).teaching.lesson_speed == 0.5
-
-
 @pytest.mark.parametrize(
     ("key", "low", "high", "told"),
     [

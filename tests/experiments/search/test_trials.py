@@ -11,9 +11,8 @@ from kurt2rt.experiments.search import trials as trials_module
 from kurt2rt.experiments.search.plan import SearchPlan
 from kurt2rt.experiments.search.trials import SearchTrials, run_trials
 from kurt2rt.experiments.study import provenance
-from kurt2rt.experiments.study.pool import PoolProgress
+from kurt2rt.experiments.study.pool import PoolProgress, Waves, open_processes, run_missing
 from kurt2rt.experiments.study.results import StudyError
-from kurt2rt.experiments.study.runner import Waves, open_processes, run_missing
 from tests.experiments.search.tiny import tiny_plan
 from tests.experiments.study.here import HERE
 
@@ -56,26 +55,6 @@ def copied(finished: Whole, tmp_path: Path) -> SearchPlan:
     return plan
 
 
-def test_first_trial_has_the_shipped_settings(whole: list[Trial]) -> None:
-    first, *others = [params for params, *_ in whole]
-    assert first == {"learning.radius": 900.0, "learning.weights.0.weight": 1.5}
-    assert len({params["learning.radius"] for params in (first, *others)}) == 3
-    assert all(300.0 <= params["learning.radius"] <= 2000.0 for params in others)
-
-
-def test_trial_is_scored_by_all_its_robots(whole: list[Trial]) -> None:
-    for _, state, value, scores in whole:
-        assert state is TrialState.COMPLETE
-        assert list(scores) == [0, 1]
-        assert value == scores[1]
-
-
-def test_progress_is_in_robot_time_of_all_trials(finished: Whole) -> None:
-    done_s = [each.done_s for each in finished.progress]
-    assert done_s == sorted(done_s)
-    assert done_s[-1] == pytest.approx(3 * 2 * (2.0 + 2.0))
-
-
 def test_finished_search_is_left_alone(whole: list[Trial], copied: SearchPlan) -> None:
     files = sorted(path for path in copied.folder.rglob("*.json"))
     before = [path.stat().st_mtime_ns for path in files]
@@ -114,30 +93,12 @@ def test_search_interrupted_between_robots_goes_on(
     assert run(tiny_plan(tmp_path)) == whole
 
 
-def test_search_without_some_results_makes_them_again(whole: list[Trial], copied: SearchPlan) -> None:
-    lost = copied.folder / "results/trials/0001"
-    content = {path: path.read_bytes() for path in lost.iterdir()}
-    shutil.rmtree(lost)
-    assert run(copied) == whole
-    assert {path: path.read_bytes() for path in lost.iterdir()} == content
-
-
 def test_results_of_another_search_are_refused(copied: SearchPlan, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(StudyError, match=r"what differs: task\)"):
         run(tiny_plan(copied.folder.parent, sampler_seed=1))
     monkeypatch.setattr(provenance, "source_hash", lambda: "new")
     with pytest.raises(StudyError, match=r"what differs: source\)"):
         run(tiny_plan(copied.folder.parent))
-
-
-def test_other_sampler_seed_has_other_trials(whole: list[Trial], tmp_path: Path) -> None:
-    plan = tiny_plan(tmp_path, sampler_seed=1)
-    found = SearchTrials(plan)
-    for number in range(3):
-        found.begin(number)
-    params = [each.params for each in found.all]
-    assert params[0] == whole[0][0]
-    assert params[1] != whole[1][0]
 
 
 def test_trial_that_cannot_beat_the_median_is_pruned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,13 +4,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.pool import JobProcesses, PoolProgress
+from kurt2rt.experiments.study.pool import JobProcesses, PoolProgress, run_missing
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.runner import LocalExecutor, run_missing
 from kurt2rt.experiments.study.study_plan import AboutT, StudyPlan
 from tests.experiments.helpers import ROBOT, STAGE
 
-HERE = LocalExecutor(JobProcesses(1))
+HERE = JobProcesses(1)
 """It starts no process, so there is nothing to end."""
 
 

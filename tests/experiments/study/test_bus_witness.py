@@ -14,7 +14,7 @@ from kurt2rt.experiments.study.bus_witness import BusWitnessJob, BusWitnessOutco
 from kurt2rt.experiments.study.provenance import source_hash
 from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.experiments.study.seeds import make_plan, read_results
-from kurt2rt.experiments.study.study_plan import EngineRequest, RequestedEngine, StudyPlan
+from kurt2rt.experiments.study.study_plan import EngineRequest, StudyPlan
 from tests.experiments.helpers import short_task
 from tests.experiments.study.here import carry_out, parts_in
 
@@ -23,12 +23,12 @@ IN_BATCH = EngineRequest.COMPILED
 
 
 def run(folder: Path, asked: EngineRequest = IN_BATCH) -> StudyPlan[None]:
-    plan = make_plan(TASK, [5], parts_in(folder), engine=RequestedEngine(asked))
+    plan = make_plan(TASK, [5], parts_in(folder), engine=asked)
     return carry_out(plan, folder)
 
 
 def witness_of(plan: StudyPlan[None]) -> BusWitnessJob:
-    (witness,) = plan.choice.witnesses(plan.jobs)
+    (witness,) = plan.witnesses
     return witness
 
 

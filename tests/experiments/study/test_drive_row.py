@@ -6,11 +6,13 @@ import anyio
 import pytest
 
 from kurt2rt.experiments.lockstep.drive_row import ExamVerdict
-from kurt2rt.experiments.study import examiner as module
-from kurt2rt.experiments.study.examiner import Examiner
+from kurt2rt.experiments.study import examination as module
+from kurt2rt.experiments.study.examination import Examiner
+from kurt2rt.experiments.study.seeds import make_plan
 from kurt2rt.experiments.study.targets import Verdict, needed_of, reasons_against_judging, targets_table
-from tests.experiments.helpers import ROBOT, STAGE, short_task
+from tests.experiments.helpers import short_task
 from tests.experiments.rows import FAILED, NOT_JUDGED, PASSED, row
+from tests.experiments.study.here import parts_in
 
 
 @pytest.mark.parametrize(
@@ -23,14 +25,8 @@ def test_policy_that_does_not_pass_judges_no_robot(
         return [row(verdict=NOT_JUDGED, collisions=collisions)]
 
     monkeypatch.setattr(module, "run_drives", drives)
-    examiner = Examiner(STAGE, ROBOT, short_task(), "a", 1, lambda *_: None)
+    examiner = Examiner(make_plan(short_task(), (1,), parts_in()).jobs[0], short_task(), "a", lambda *_: None)
     assert anyio.run(examiner.examine, row(verdict=policy), ()).verdict is verdict
-
-
-def test_policy_and_pupil_start_from_one_place() -> None:
-    examiner = Examiner(STAGE, ROBOT, short_task(exam_s=2.0), "a", 1, lambda *_: None)
-    first, again = (anyio.run(examiner.drive_policy) for _ in range(2))
-    assert first == again
 
 
 def test_row_tells_how_a_drive_ended() -> None:

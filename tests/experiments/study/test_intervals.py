@@ -1,4 +1,3 @@
-import math
 import statistics
 
 import pytest
@@ -14,13 +13,6 @@ from kurt2rt.experiments.study.intervals import (
     wilson_interval,
 )
 from tests.examples import examples
-
-
-def test_rate_of_no_events_ends_at_poissons_bound() -> None:
-    # The exact upper limit of a count of 0 is 3.689 (Garwood 1936).
-    rate = rate_of([0, 0, 0, 0], [0.5, 0.5, 0.5, 0.5])
-    assert (rate.value, rate.low) == (0.0, 0.0)
-    assert rate.high == pytest.approx(3.689 / 2.0, abs=1e-3)
 
 
 def test_rate_of_clustered_events_has_a_wider_interval() -> None:
@@ -42,30 +34,6 @@ def test_poissons_interval_is_garwoods(events: int, low: float, high: float) -> 
     assert poisson_interval(events) == pytest.approx((low, high), abs=1e-3)
 
 
-def test_a_single_collision_makes_nobody_surer() -> None:
-    none = rate_of([0] * 20, [1.0] * 20)
-    one = rate_of([1, *[0] * 19], [1.0] * 20)
-    assert none.high == pytest.approx(0.1844, abs=1e-4)
-    assert one.high == pytest.approx(0.2786, abs=1e-4)
-
-
-def test_one_robot_says_nothing_of_others() -> None:
-    assert rate_of([3], [0.5]) == (6.0, 0.0, math.inf)
-
-
-def test_the_interval_is_the_same_every_time() -> None:
-    assert rate_of([3, 0, 1], [0.5, 0.4, 0.5]) == rate_of([3, 0, 1], [0.5, 0.4, 0.5])
-
-
-@examples(40)  # each draws 10 000 samples
-@given(st.lists(st.tuples(st.integers(0, 9), st.floats(0.1, 2.0)), min_size=1, max_size=20))
-def test_an_interval_holds_its_ends_in_order(robots: list[tuple[int, float]]) -> None:
-    counts, exposures = [count for count, _ in robots], [exposure for _, exposure in robots]
-    rate = rate_of(counts, exposures)
-    assert rate.value == pytest.approx(sum(counts) / sum(exposures))
-    assert 0.0 <= rate.low <= rate.value <= rate.high
-
-
 @examples(40)
 @given(st.lists(st.tuples(st.integers(0, 3), st.floats(0.1, 2.0)), min_size=2, max_size=20), st.data())
 def test_one_more_event_moves_both_ends_up_or_not_at_all(robots: list[tuple[int, float]], data: st.DataObject) -> None:
@@ -75,17 +43,6 @@ def test_one_more_event_moves_both_ends_up_or_not_at_all(robots: list[tuple[int,
     more = rate_of(counts, exposures)
     assert more.low >= rate.low
     assert more.high >= rate.high
-
-
-def test_difference_of_equal_changes_is_a_point() -> None:
-    assert difference_of([0.5, 0.5, 0.5]) == (0.5, 0.5, 0.5)
-    assert difference_of([0.5]) == (0.5, -math.inf, math.inf)
-
-
-def test_changes_to_both_sides_leave_it_open() -> None:
-    change = difference_of([-1.0, 1.0, -2.0, 2.0, 0.5])
-    assert change.value == pytest.approx(0.1)
-    assert change.low < 0.0 < change.high
 
 
 @examples(40)

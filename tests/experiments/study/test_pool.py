@@ -1,6 +1,5 @@
 """Many jobs: in this process, and in others."""
 
-import gc
 import os
 import signal
 import subprocess
@@ -11,14 +10,21 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.study import pool
-from kurt2rt.experiments.study.pool import JobKilledError, JobProcesses, PoolProgress, Progress
+from kurt2rt.experiments.study.pool import JobKilledError, PoolProgress, open_processes
+from kurt2rt.experiments.study.provenance import Provenance
+from kurt2rt.experiments.study.results import Progress, Results, StoredJob
+from tests.experiments.rows import MADE_OF
+
+RESULTS = Results(Path("never-made"))
 
 
-@dataclass(frozen=True)
-class Job:
-    name: str
-    robot_time_s: float
+@dataclass(frozen=True, kw_only=True)
+class Job(StoredJob):
+    results: Results = RESULTS
+    seed: int = 1
+    made_of: Provenance = MADE_OF
+    stem: str = ""
+    robot_time_s: float = 1.0
     fails: bool = False
 
     def run(self, tell: Progress) -> None:
@@ -27,12 +33,12 @@ class Job:
         tell(self.robot_time_s / 2)
 
 
-JOBS = [Job("short", 10.0), Job("long", 40.0), Job("middle", 20.0)]
+JOBS = [Job(name=name, robot_time_s=time_s) for name, time_s in (("short", 10.0), ("long", 40.0), ("middle", 20.0))]
 
 
-def run_jobs(jobs: Sequence[pool.Job], processes: int, told: list[PoolProgress] | None = None) -> None:
-    with JobProcesses(processes) as running:
-        running.run(jobs, (told if told is not None else []).append)
+def run_jobs(jobs: Sequence[StoredJob], processes: int, told: list[PoolProgress] | None = None) -> None:
+    with open_processes(processes) as running:
+        running.run(jobs, {}, RESULTS, (told if told is not None else []).append)
 
 
 def test_run_jobs_progress_is_in_robot_time() -> None:
@@ -52,73 +58,33 @@ def test_run_jobs_progress_is_in_robot_time() -> None:
 def test_run_jobs_error_ends_other_jobs() -> None:
     told: list[PoolProgress] = []
     with pytest.raises(RuntimeError, match="middle fails") as caught:
-        run_jobs([JOBS[0], JOBS[1], Job("middle", 20.0, fails=True)], 1, told)
+        run_jobs([JOBS[0], JOBS[1], Job(name="middle", robot_time_s=20.0, fails=True)], 1, told)
     assert told[-1] == (40.0, ("middle",))
     assert caught.value.__notes__ == ["middle"]
 
 
-def test_run_jobs_unfreezes_only_what_it_froze() -> None:
-    before = gc.get_freeze_count()
-    assert before > 0  # tests/conftest.py
-    run_jobs(JOBS, 1)
-    assert gc.get_freeze_count() >= before
-
-
-def test_no_jobs_are_no_work() -> None:
-    told: list[PoolProgress] = []
-    run_jobs([], 2, told)
-    assert told == [(0.0, ())]
-
-
-@pytest.mark.deep
-def test_other_processes_tell_their_progress() -> None:
-    told: list[PoolProgress] = []
-    run_jobs(JOBS, 2, told)
-    assert told[-1] == (70.0, ())
-
-
-@dataclass(frozen=True)
-class Asked:
+@dataclass(frozen=True, kw_only=True)
+class Asked(Job):
     """Writes down the process that it runs in."""
 
-    name: str
     folder: Path
-    robot_time_s: float = 1.0
 
     def run(self, tell: Progress) -> None:
         del tell
         (self.folder / f"{os.getpid()}").touch()
 
 
-@pytest.mark.deep
-def test_processes_are_kept_from_wave_to_wave(tmp_path: Path) -> None:
-    with JobProcesses(2) as processes:
-        for _ in range(3):
-            processes.run([Asked(str(number), tmp_path) for number in range(4)])
-    used = {path.name for path in tmp_path.iterdir()}
-    assert str(os.getpid()) not in used
-    assert len(used) <= 2
-
-
 def test_a_single_job_of_a_wave_starts_no_process(tmp_path: Path) -> None:
-    with JobProcesses(2) as processes:
-        processes.run([Asked("alone", tmp_path)])
+    with open_processes(2) as processes:
+        processes.run([Asked(name="alone", folder=tmp_path)], {}, RESULTS, lambda _: None)
     assert [path.name for path in tmp_path.iterdir()] == [str(os.getpid())]
 
 
-@pytest.mark.deep
-def test_run_jobs_error_in_a_process_names_the_job() -> None:
-    with pytest.raises(RuntimeError, match="middle fails") as caught:
-        run_jobs([JOBS[0], Job("middle", 20.0, fails=True)], 2)
-    assert caught.value.__notes__ == ["middle"]
-
-
-@dataclass(frozen=True)
-class Killed:
+@dataclass(frozen=True, kw_only=True)
+class Killed(Job):
     """Kills its own process, as the system does where memory runs out."""
 
     name: str = "greedy, seed 7"
-    robot_time_s: float = 30.0
 
     def run(self, tell: Progress) -> None:
         del tell
@@ -127,22 +93,20 @@ class Killed:
 
 @pytest.mark.deep
 def test_a_job_whose_process_is_killed_is_named() -> None:
-    jobs: list[Job | Killed] = [*JOBS, Killed()]
+    jobs = [*JOBS, Killed()]
     with pytest.raises(JobKilledError, match=r"^greedy, seed 7: "):
         run_jobs(jobs, 2)
 
 
-@dataclass(frozen=True)
-class Waiting:
+@dataclass(frozen=True, kw_only=True)
+class Waiting(Job):
     """Says that it runs, then waits for what never comes."""
 
-    name: str
-    file: Path
-    robot_time_s: float = 1.0
+    begun: Path
 
     def run(self, tell: Progress) -> None:
         del tell
-        self.file.write_text(str(os.getpid()))
+        self.begun.write_text(str(os.getpid()))
         os.write(1, b"begun\n")  # one write, so other writers cannot split it
         signal.pause()
 
@@ -154,7 +118,7 @@ from tests.experiments.study.test_pool import Waiting, run_jobs
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
-    run_jobs([Waiting(str(number), folder / str(number)) for number in range(6)], 2)
+    run_jobs([Waiting(name=str(number), begun=folder / str(number)) for number in range(6)], 2)
 """
 
 

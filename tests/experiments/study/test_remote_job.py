@@ -2,64 +2,52 @@
 
 import pickle
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from kurt2rt.experiments.study.jobs import TaughtOutcome
-from kurt2rt.experiments.study.pool import PoolProgress, Progress
+from kurt2rt.experiments.study.pool import PoolProgress, run_missing
 from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.remote_job import WorkerDiffersError, pack, run_remote_job, unpack
-from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.runner import StoredJob, run_missing
+from kurt2rt.experiments.study.results import Progress, Results, StoredJob
 from tests.experiments.rows import MADE_OF, lesson
 from tests.experiments.study.here import HERE
 
 
 @dataclass(frozen=True, kw_only=True)
-class Job:
+class Job(StoredJob):
     """Writes as many RLAs as the files that it reads are long."""
 
-    results: Results
-    seed: int
-    stem: str
+    outcome = TaughtOutcome
     before: "Job | None" = None
     given: Path | None = None
     made_of: Provenance = MADE_OF
-    outcome: type[TaughtOutcome] = TaughtOutcome
-    replaces_others: bool = False
     robot_time_s: float = 1.0
-
-    @property
-    def name(self) -> str:
-        return f"{self.stem}, seed {self.seed}"
-
-    @property
-    def file(self) -> str:
-        return f"results/{self.stem}-{self.seed}.json"
-
-    @property
-    def knowledge_name(self) -> str:
-        return f"knowledge/{self.stem}-{self.seed}.knowledge"
 
     def run(self, tell: Progress) -> None:
         tell(1.0)
         length = 7 if self.given is None else len(self.given.read_text())
         if self.before is not None:
             length += self.before.results.read(self.before, TaughtOutcome).lesson.rlas
-            length += len((self.before.results.folder / self.before.knowledge_name).read_text())
+            length += len(self.before.knowledge.read_text())
         with self.results.scratch() as folder:
             (folder / "knowledge").write_text(f"{self.name} taught")
-            self.results.keep(folder / "knowledge", self.knowledge_name)
+            self.results.keep(folder / "knowledge", f"knowledge/{self.stem}.knowledge")
         outcome = TaughtOutcome(made_of=MADE_OF, seed=self.seed, lesson=lesson(self.seed, rlas=length))
         self.results.write(self, outcome)
 
 
+def job_in(results: Results, seed: int, stem: str, **more: Any) -> Job:
+    return Job(results=results, seed=seed, stem=f"{stem}-{seed}", name=f"{stem}, seed {seed}", **more)
+
+
 def waves_in(folder: Path, given: Path) -> Sequence[Sequence[Job]]:
     results = Results(folder)
-    first = [Job(results=results, seed=seed, stem="first", given=given) for seed in (3, 5)]
-    return first, [Job(results=results, seed=job.seed, stem="then", before=job) for job in first]
+    first = [job_in(results, seed, "first", given=given) for seed in (3, 5)]
+    return first, [job_in(results, job.seed, "then", before=job) for job in first]
 
 
 @pytest.fixture
@@ -90,17 +78,6 @@ def test_remote_jobs_give_what_jobs_leave_here(tmp_path: Path, given: Path) -> N
     assert files(tmp_path / "there") == files(tmp_path / "here")
 
 
-def test_remote_job_needs_no_file_of_its_sender(tmp_path: Path, given: Path) -> None:
-    plan, results = waves_in(tmp_path / "there", given), Results(tmp_path / "there")
-    (first, _), (then, _) = plan
-    with results.held():
-        unpack(first, results, run_remote_job(pack(first, results, [])))
-        remote_job = pack(then, results, [first])
-        gone = tmp_path / "gone"
-        (tmp_path / "there").rename(gone)
-        assert set(run_remote_job(remote_job)) == {"knowledge/then-3.knowledge", "results/then-3.json"}
-
-
 def test_remote_job_of_another_program_is_refused(tmp_path: Path, given: Path) -> None:
     (first, _), _ = waves_in(tmp_path, given)
     remote_job = pack(first, Results(tmp_path), [])._replace(program="another")
@@ -111,10 +88,11 @@ def test_remote_job_of_another_program_is_refused(tmp_path: Path, given: Path) -
 def test_unpack_gives_an_earlier_knowledge_file_another_name(tmp_path: Path, given: Path) -> None:
     results = Results(tmp_path / "there")
     (first, _), _ = waves_in(tmp_path / "there", given)
+    name = str(first.knowledge_name)
     with results.held():
-        unpack(first, results, {first.knowledge_name: b"old", first.file: b"{}"})
-        unpack(first, results, {first.knowledge_name: b"new", first.file: b"{}"})
-    knowledge = tmp_path / "there" / first.knowledge_name
+        unpack(first, results, {name: b"old", first.file: b"{}"})
+        unpack(first, results, {name: b"new", first.file: b"{}"})
+    knowledge = first.knowledge
     assert (knowledge.read_bytes(), knowledge.with_name(f"{knowledge.name}.1").read_bytes()) == (b"new", b"old")
 
 
@@ -146,10 +124,3 @@ class _InTurn:
         for job in jobs:
             unpack(job, results, run_remote_job(pack(job, results, earlier.get(job.seed, ()))))
             on_progress(PoolProgress(1.0, ()))
-
-
-def test_remote_job_of_a_job_with_other_paths_keeps_them(tmp_path: Path, given: Path) -> None:
-    (first, _), _ = waves_in(tmp_path / "there", given)
-    missing = replace(first, given=tmp_path / "nowhere")
-    with pytest.raises(FileNotFoundError, match="nowhere"):
-        run_remote_job(pack(missing, Results(tmp_path / "there"), []))

@@ -1,13 +1,10 @@
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from config.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.study.pool import JobProcesses
+from kurt2rt.experiments.study.pool import open_processes, run_missing
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.runner import open_processes, run_missing
 from kurt2rt.experiments.study.seeds import forget_lost_robots, make_plan, read_results
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.journal.journal import Journal
@@ -65,13 +62,3 @@ def test_two_fresh_processes_come_to_the_same_as_this_one(tmp_path: Path) -> Non
         file = f"wall_following-{seed}.knowledge"
         with Journal.read_only(tmp_path / "here" / file) as one, Journal.read_only(tmp_path / "there" / file) as other:
             assert one.events() == other.events()
-
-
-@pytest.mark.deep
-def test_seed_job_with_an_error_ends_all_others(tmp_path: Path) -> None:
-    failing, *others = plan_in(tmp_path, 5, *range(10, 30)).waves[0]
-    task = TASK.model_copy(update={"exam": TASK.exam.model_copy(update={"worlds": ("nowhere",)})})
-    with Results(tmp_path).held(), pytest.raises(SettingsError, match=r"nowhere: .*worlds") as caught:
-        JobProcesses(1).run([replace(failing, task=task), *others])
-    assert caught.value.__notes__ == ["wall_following, seed 5"]
-    assert not list(tmp_path.glob("*.knowledge"))

@@ -9,20 +9,20 @@ from matplotlib.image import imread
 from config.settings import SettingsError
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
 from kurt2rt.core.rla.rla import Origin, Phase, Rla
-from kurt2rt.experiments.study.checkpoints import events_before_press
-from kurt2rt.experiments.study.results import Results, StudyError
-from kurt2rt.experiments.study.runner import missing_time_s
+from kurt2rt.experiments.study.examination import events_before_press
+from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.study_plan import StudyPlan
-from kurt2rt.experiments.transfer.study import (
+from kurt2rt.experiments.transfer import (
     HomeJob,
     NewWorlds,
     Transfer,
     TransferJob,
     TransferOutcome,
     make_plan,
+    read_study,
     task_in,
+    tell,
 )
-from kurt2rt.experiments.transfer.tables import TransferStudy, all_tables, draw_curves, read_study
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.helpers import short_task
 from tests.experiments.study.here import carry_out, parts_in
@@ -39,7 +39,6 @@ def plan_in(folder: Path, new: NewWorlds = NEW) -> StudyPlan[Transfer]:
 class Done:
     results: Results
     plan: StudyPlan[Transfer]
-    study: TransferStudy
 
     @property
     def job(self) -> TransferJob:
@@ -55,7 +54,7 @@ class Done:
 def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
     folder = tmp_path_factory.mktemp("transfer")
     plan = carry_out(plan_in(folder), folder)
-    return Done(Results(folder), plan, read_study(plan))
+    return Done(Results(folder), plan)
 
 
 def events_of(file: Path) -> list[TeachingEvent]:
@@ -71,15 +70,6 @@ def test_robot_goes_on_from_what_it_was_taught_at_home(done: Done) -> None:
     assert after[: len(before)] == before
     assert len(after) - len(before) == outcome.checkpoints[-1].lessons >= 1
     assert {event.origin.phase for event in after[len(before) :]} == {Phase.CORRECTIONS}
-
-
-def test_checkpoints_grow_by_presses_from_home_knowledge(done: Done) -> None:
-    outcome = done.outcome
-    assert [each.presses for each in outcome.checkpoints] == list(AFTER)
-    lessons = [each.lessons for each in outcome.checkpoints]
-    assert lessons[0] == 0
-    assert lessons == sorted(lessons)
-    assert outcome.checkpoints[-1].teaching_s <= outcome.lesson.teaching_s
 
 
 def test_checkpoint_is_what_a_shorter_lesson_teaches(done: Done) -> None:
@@ -107,9 +97,9 @@ def test_lessons_of_a_press_come_before_the_next_press() -> None:
 def test_robot_that_was_not_taught_on_drives_at_home_as_before(done: Done) -> None:
     job = replace(done.job, after=(0,), stem="not-taught")
     job.run(lambda _: None)
-    outcome, (before,) = done.results.read(job, TransferOutcome), done.study.home
+    outcome, (before,) = done.results.read(job, TransferOutcome), read_study(done.plan).home.rows
     assert outcome.lesson.presses == outcome.checkpoints[0].lessons == 0
-    assert outcome.home == outcome.home_when_right == before.drive
+    assert outcome.home == outcome.home_when_right == before.home
 
 
 def test_other_teacher_of_the_new_world_teaches_there() -> None:
@@ -118,28 +108,15 @@ def test_other_teacher_of_the_new_world_teaches_there() -> None:
     assert task_in("rooms-1", short_task()).teaching.profile == short_task().teaching.profile
 
 
-def test_study_goes_on_where_it_was(done: Done) -> None:
-    with pytest.raises(StudyError):
-        missing_time_s(plan_in(done.results.folder, NEW._replace(seconds=14.0)).waves, done.results)
-
-
-def test_tables_and_figure_show_each_world(done: Done, tmp_path: Path) -> None:
-    _, curve, teaching, robots = all_tables(done.study)
+def test_tables_and_figure_show_each_world(done: Done) -> None:
+    told = tell(done.plan)
+    _, curve, teaching, robots = told.tables
     assert [row[:2] for row in curve.rows] == [("rooms-SEED", "taught on"), ("rooms-SEED", "until right")]
     assert len(teaching.rows) == 1
     assert [row[:2] for row in robots.rows] == [("1", "rooms-1")]
-    draw_curves(done.study, tmp_path / "curve.png")
-    assert imread(tmp_path / "curve.png").shape[0] > 300
+    assert imread(told.files["figure"]).shape[0] > 300
 
 
 def test_home_is_no_new_world(tmp_path: Path) -> None:
     with pytest.raises(SettingsError, match=r"world a\b"):
         plan_in(tmp_path, NewWorlds(("a",)))
-
-
-def test_job_tells_its_progress_up_to_its_robot_time(done: Done) -> None:
-    job = replace(done.job, stem="told")
-    told: list[float] = []
-    job.run(told.append)
-    assert told == sorted(told)
-    assert 0.0 < told[-1] <= job.robot_time_s + 1.0

@@ -1,28 +1,21 @@
 """Tables, verdicts and measures of the transfer study."""
 
-import math
-
 import pytest
 
-from kurt2rt.experiments.lockstep.drive_row import DriveRow
-from kurt2rt.experiments.study.checkpoints import Checkpoint
-from kurt2rt.experiments.transfer.study import (
+from kurt2rt.experiments.study.examination import Checkpoint
+from kurt2rt.experiments.study.study_plan import Group
+from kurt2rt.experiments.transfer import (
     HomeOutcome,
-    TransferOutcome,
-    make_plan,
-)
-from kurt2rt.experiments.transfer.tables import (
     There,
+    TransferOutcome,
     TransferStudy,
     all_tables,
-    curve_table,
     drive_text,
-    median_of,
-    teaching_table,
+    make_plan,
     verdicts,
 )
 from tests.experiments.helpers import short_task
-from tests.experiments.rows import FAILED, MADE_OF, NOT_JUDGED, lesson, row
+from tests.experiments.rows import FAILED, MADE_OF, NOT_JUDGED, lesson, row, titled
 from tests.experiments.study.here import parts_in
 from tests.experiments.transfer.test_study import AFTER, NEW
 
@@ -66,45 +59,32 @@ def robots(*there: tuple[str, ...], home: str = "right") -> TransferStudy:
             seed=each.seed,
             lesson=lesson(each.seed, presses=40),
             lessons=120,
-            drive=row(),
+            home=row(),
             policy=row(),
         )
         for each in outcomes
     )
-    return TransferStudy(plan, home_outcomes, (There("rooms-SEED", outcomes),))
+    return TransferStudy(plan, Group("a", home_outcomes), (There("rooms-SEED", outcomes),))
 
 
 def shares(study: TransferStudy) -> list[list[str]]:
-    return [[cell.split(" (")[0] for cell in each[3:]] for each in curve_table(study).rows]
-
-
-def test_presses_until_right_are_the_fewest_that_passed() -> None:
-    assert (robot(1, *RIGHT_AT_ONCE).presses_until_right, robot(1, *RIGHT_AT_ONCE).seconds_until_right) == (0, 0.0)
-    assert (robot(1, *RIGHT_AFTER_5).presses_until_right, robot(1, *RIGHT_AFTER_5).seconds_until_right) == (5, 60.0)
-    never = robot(1, *NEVER_RIGHT)
-    assert math.isinf(never.presses_until_right)
-    assert math.isinf(never.seconds_until_right)
-
-
-@pytest.mark.parametrize(
-    ("values", "median"), [([0, 5, 10], 5), ([0, 5], 2.5), ([0, math.inf], math.inf), ([math.inf, math.inf], math.inf)]
-)
-def test_median_of_values_that_may_be_infinite(values: list[float], median: float) -> None:
-    assert median_of(values) == median
+    return [[cell.split(" (")[0] for cell in each[3:]] for each in titled(all_tables(study), "Robots that are").rows]
 
 
 def test_curve_counts_judged_robots_that_are_right() -> None:
     study = robots(RIGHT_AT_ONCE, RIGHT_AFTER_5, NEVER_RIGHT, UNJUDGED)
     assert shares(study) == [["1 of 3", "1 of 3", "2 of 3"]] * 2
-    assert curve_table(study).rows[0][2] == "4 of 4"  # own drives of the policy
+    assert titled(all_tables(study), "Robots that are").rows[0][2] == "4 of 4"  # own drives of the policy
     failed_again = robots(("collided", "right", "collided"))
     assert shares(failed_again) == [["0 of 1", "1 of 1", "0 of 1"], ["0 of 1", "1 of 1", "1 of 1"]]
 
 
 def test_teaching_table_has_medians_and_home() -> None:
-    (cells,) = teaching_table(robots(RIGHT_AT_ONCE, RIGHT_AFTER_5, RIGHT_AFTER_5, home="collided")).rows
+    (cells,) = titled(
+        all_tables(robots(RIGHT_AT_ONCE, RIGHT_AFTER_5, RIGHT_AFTER_5, home="collided")), "Presses until"
+    ).rows
     assert cells[1:] == ("5", "60", "5", "1", "9", "3 of 3", "0 of 3", "3 of 3")
-    (cells,) = teaching_table(robots(NEVER_RIGHT)).rows
+    (cells,) = titled(all_tables(robots(NEVER_RIGHT)), "Presses until").rows
     assert cells[1:3] == ("more than 5", "never")
 
 
@@ -123,7 +103,5 @@ def test_verdicts_are_on_judged_robots(study: TransferStudy, results: list[str])
 
 def test_a_drive_is_told_by_what_went_wrong() -> None:
     lost_way = row(verdict=FAILED, findings={"junctions": 10.0, "junctions right": 9.0})
-    drives: list[DriveRow] = [*DRIVES.values(), lost_way]
-    assert [drive_text(each) for each in drives] == [
-        *("right", "2 collisions", "stuck at 300 s", "slow", "not judged", "90% of junctions right"),
-    ]
+    told = [drive_text(each) for each in (*DRIVES.values(), lost_way)]
+    assert told == ["right", "2 collisions", "stuck at 300 s", "slow", "not judged", "90% of junctions right"]

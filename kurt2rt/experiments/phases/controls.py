@@ -1,11 +1,15 @@
-"""Changes of the knowledge before a branch begins: wrong actions, and another critic."""
+"""Controls of the phases study: wrong actions, another critic, and a count of what critic and judge say."""
 
 import random
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
+from behaviors.judges.judge import Judge
+from config.settings import Settings
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated, RlaDeleted, TeachingEvent
 from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
+from kurt2rt.core.tick_record import TickRecord
 
 _NAME = "corruption"
 
@@ -60,3 +64,34 @@ def shuffled(
             tick += apart_ticks
             origin = Origin(f"trusted-{seed}-{appraisal.name}-{number}", _NAME, Phase.CRITIC, tick)
             yield Appraised(appraisal.name, appraisal.value, tick, origin)
+
+
+class Judgement(Settings):
+    """Opinions of judge and critic, with the number of their ticks."""
+
+    judged: int
+    """Opinion of the judge: -1, 0 or +1."""
+    said: int | None
+    """Opinion of the critic; None: unknown."""
+    ticks: int
+
+
+class Scoring:
+    """Counter of the pairs of opinions of critic and judge, while the robot drives."""
+
+    def __init__(self, judge: Judge) -> None:
+        self._judge = judge
+        self._ticks: Counter[tuple[int, int | None]] = Counter()
+
+    def on_tick(self, record: TickRecord) -> None:
+        """Count the pair of opinions of critic and judge in one tick; call it on every tick."""
+        if record.appraisal_features is None or not record.decision.driving:
+            return
+        said = None if record.opinion is None else record.opinion.said
+        self._ticks[self._judge.judge(record.appraisal_features), said] += 1
+
+    @property
+    def judgements(self) -> Iterator[Judgement]:
+        """Pairs of opinions of judge and critic, each with its number of ticks."""
+        for judged, said in sorted(self._ticks, key=str):
+            yield Judgement(judged=judged, said=said, ticks=self._ticks[judged, said])
