@@ -49,8 +49,8 @@ from kurt2rt.knowledge.journal.writer import utc_now
 from kurt2rt.platform.ledger import Percentiles, TickTimer, percentiles_of
 from kurt2rt.platform.scheduler import Scheduler
 from kurt2rt.platform.timerfd_clock import TimerfdClock
-from kurt2rt.runs.recording.budget import budget_of
 from kurt2rt.runs.recording.recording import Recording
+from kurt2rt.runs.recording.run_folder import budget_of
 from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.post_tick import ProgramConsole
 from kurt2rt.service.serve import ChannelOptions, ServeOptions, serve

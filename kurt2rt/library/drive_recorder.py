@@ -12,8 +12,8 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.library.extras import extra_named
-from kurt2rt.runs.recording.budget import Budget
 from kurt2rt.runs.recording.recording import Recording, RunContext
+from kurt2rt.runs.recording.run_folder import Budget
 from simbridge.contracts.simulation import SimulatedPlace, Simulation, WorldPlan
 
 _NO_LIMIT = Budget(total_bytes=1 << 62, segment_bytes=32_000_000)

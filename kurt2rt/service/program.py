@@ -22,9 +22,9 @@ from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.malloc import pin_mmap_threshold
 from kurt2rt.platform.realtime_priority import set_sched_fifo
-from kurt2rt.runs.recording.budget import budget_of
 from kurt2rt.runs.recording.can_log import CanLog, open_can_log
 from kurt2rt.runs.recording.recording import Recording
+from kurt2rt.runs.recording.run_folder import budget_of
 from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.bus_names import SHARED
 from kurt2rt.service.child_processes import ChildProcesses

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.runs.recording.budget import Budget
-from kurt2rt.runs.recording.run_folder import segments_in
+from kurt2rt.runs.recording.run_folder import Budget, segments_in
 from kurt2rt.runs.recording.segment_reader import SegmentReader
 from kurt2rt.runs.recording.tick_json import decode_tick
 from kurt2rt.runs.recording.topics import TICK

@@ -17,8 +17,8 @@ from kurt2rt.core.teaching.inbox import InboxFullError
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.loading import open_for_teaching
 from kurt2rt.platform.gc_control import gc_frozen
-from kurt2rt.runs.recording.budget import budget_of
 from kurt2rt.runs.recording.recording import Recording, RunContext
+from kurt2rt.runs.recording.run_folder import budget_of
 from kurt2rt.service.assembly import RunSettings, assemble_service
 from kurt2rt.service.post_tick import PostTick, ProgramConsole
 from kurt2rt.service.settings import load_service

@@ -13,7 +13,7 @@ from kurt2rt.core.rla.events import Appraised, Lesson, LessonRedone, TeachingEve
 from kurt2rt.core.rla.lesson_history import LessonRecord, hold_text
 from kurt2rt.core.rla.rla import ASK, CRITIC, MID
 from kurt2rt.core.teaching.question import FeatureDifference, MidQuestion, Question
-from kurt2rt.runs.explain.lesson_words import LessonDescriber
+from kurt2rt.runs.explain.timeline import LessonDescriber
 from tests.core.planning.town import Town
 from tests.core.rla.helpers import created, deleted, named, origin, replaced, rewarded, session, undone, withdrawn
 

@@ -18,9 +18,8 @@ from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, sensor_counterfactuals
 from kurt2rt.runs.explain.facts import DecisionFacts
-from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.replay.comparison import TickDifference, compare
-from kurt2rt.runs.replay.replay import Replay
+from kurt2rt.runs.replay.replay import Replay, empty_run_error
 from kurt2rt.runs.replay.run import Run
 
 
@@ -48,15 +47,12 @@ def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda 
     reckoned: dict[str, str] = {}
     counted = replay.runtime.statistics
     uses_before: dict[int, int] = {}
-    began_s = last_s = 0.0
-    newest = None
-    difference = None
+    last_s = 0.0
+    newest = difference = None
     for entry in run.entries():
-        if newest is None:
-            began_s = entry.now_s
-        elif entry.now_s - began_s > at_s:
+        if newest is not None and run.elapsed_s(entry) > at_s:
             break
-        last_s = entry.now_s - began_s
+        last_s = run.elapsed_s(entry)
         for event in entry.events:
             reckoned[event.origin.command_id] = _stamp(run.head.started_at, last_s)
             _count_uses_before(event, counted.uses, uses_before, replay.runtime.level.system)
@@ -66,9 +62,7 @@ def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda 
         if entry.tick % 100 == 0:
             report(last_s)
     if newest is None:
-        raise RecordingError(
-            "holds no tick", where=run.name, do=f"{run.trouble or 'the program ended before the first one'}"
-        )
+        raise empty_run_error(run)
     runtime = replay.runtime
     # As the journal has it; a recording that does not say so says to the second when the tick was.
     stamps.update({**reckoned, **run.stamps(reckoned.keys())})

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.decision.decision import Decision, DecisionCause, JunctionEvent, MidDecision, PlanStep
+from kurt2rt.core.decision.decision import Decision, DecisionCause, JunctionEvent, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.active_rlas import Match
@@ -27,7 +27,7 @@ class MatchEntry(NamedTuple):
 
 
 class MidEntry(NamedTuple):
-    """Command of the mid level, with the fields of MidDecision."""
+    """Command of the mid level, with the fields of MidDecision in their order."""
 
     behaviour: str
     rla_id: int | None
@@ -38,7 +38,7 @@ class MidEntry(NamedTuple):
 
 
 class DecisionEntry(NamedTuple):
-    """Decision, with the fields of Decision."""
+    """Decision, with the fields of Decision in their order."""
 
     wheel_speeds: WheelSpeeds
     cause: DecisionCause
@@ -54,7 +54,7 @@ class DecisionEntry(NamedTuple):
 
 
 class OpinionEntry(NamedTuple):
-    """Appraisal of the critic, with the fields of Opinion."""
+    """Appraisal of the critic, with the fields of Opinion in their order."""
 
     value: int
     appraisal: str
@@ -140,18 +140,9 @@ def _result_entry(result: CommandResult) -> ResultEntry:
 
 def decision_entry(decision: Decision) -> DecisionEntry:
     """Return a decision with ids instead of RLAs."""
-    return DecisionEntry(
-        wheel_speeds=decision.wheel_speeds,
-        cause=decision.cause,
-        action=decision.action,
-        rla_id=decision.rla_id,
-        match=match_entry(decision.match),
-        answers=decision.answers,
-        asks_at=decision.asks_at,
-        mid=None if decision.mid is None else _mid_entry(decision.mid),
-        plan=decision.plan,
-        doubt=decision.doubt,
-    )
+    mid = decision.mid
+    told = None if mid is None else MidEntry._make(mid)._replace(match=match_entry(mid.match))
+    return DecisionEntry._make(decision)._replace(match=match_entry(decision.match), mid=told)
 
 
 def match_entry(match: Match | None) -> MatchEntry | None:
@@ -163,10 +154,4 @@ def match_entry(match: Match | None) -> MatchEntry | None:
 
 
 def _opinion_entry(opinion: Opinion) -> OpinionEntry:
-    rla_id = None if opinion.rla is None else opinion.rla.rla_id
-    value, appraisal, trace_s, _, distance, radius, known = opinion
-    return OpinionEntry(value, appraisal, trace_s, rla_id, distance, radius, known)
-
-
-def _mid_entry(mid: MidDecision) -> MidEntry:
-    return MidEntry(mid.behaviour, mid.rla_id, match_entry(mid.match), mid.asks, mid.overridden, mid.event)
+    return OpinionEntry._make(opinion)._replace(rla_id=None if opinion.rla is None else opinion.rla.rla_id)

@@ -12,12 +12,12 @@ from foxglove import Context
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.platform.yield_gil import yield_gil
-from kurt2rt.runs.recording.budget import Budget
 from kurt2rt.runs.recording.live_view import LiveView
-from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recording_disk import Disk
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_files import RunFiles
+from kurt2rt.runs.recording.run_folder import Budget
+from kurt2rt.runs.recording.run_head import RecordedRun
 from kurt2rt.runs.recording.topics import Topics
 from kurt2rt.runs.recording.writer_thread import WriterThread
 from simbridge.contracts.simulation import SimulatedPlace, WorldPlan, WorldView
@@ -43,17 +43,15 @@ class TickNote(NamedTuple):
 
 
 class QuestionNote(NamedTuple):
-    """Note that a question begins, on its way to the recorder's thread."""
+    """Question that begins; its text is `str(question)`."""
 
     question: object
-    """Object whose `str` is the question."""
 
 
 class HealthNote(NamedTuple):
-    """Health report of the program."""
+    """Health report of the program, in plain values."""
 
     report: Mapping[str, Any]
-    """Report as plain values."""
 
 
 Note = TickNote | QuestionNote | HealthNote | Acknowledgement
@@ -241,16 +239,12 @@ class RunRecorder:
             self._not_written += self._unsaved
             self._unsaved = 0
         elif kept:
-            self._mark_saved()
+            self.written, self._unsaved = self.written + self._unsaved, 0
         if files.folders > max(folders, 1):  # a user deleted the run
             self._not_written += self.written
             self.written = 0
         if files.is_open and (not took or files.given_up > given_up):
             self._file_log.topics.repeat_periodic()
-
-    def _mark_saved(self) -> None:
-        self.written += self._unsaved
-        self._unsaved = 0
 
     def _run(self) -> None:
         rounds = rounds_of_files = 0
@@ -283,7 +277,7 @@ class RunRecorder:
                 self._poll_files()
                 self.write_waiting()
                 if self._files.close():
-                    self._mark_saved()
+                    self.written, self._unsaved = self.written + self._unsaved, 0
         finally:
             if self._ticks:
                 self._not_written += len(self._thread) + len(self._held) + self._unsaved

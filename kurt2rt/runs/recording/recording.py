@@ -15,10 +15,8 @@ from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge
-from kurt2rt.runs.recording.budget import Budget
-from kurt2rt.runs.recording.recorded_run import RecordedRun
-from kurt2rt.runs.recording.run_folder import run_name
-from kurt2rt.runs.recording.run_head import RunHead
+from kurt2rt.runs.recording.run_folder import Budget, run_name
+from kurt2rt.runs.recording.run_head import RecordedRun, RunHead
 from simbridge.contracts.simulation import WorldView
 
 if TYPE_CHECKING:

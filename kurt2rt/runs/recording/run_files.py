@@ -7,10 +7,9 @@ from pathlib import Path
 from foxglove import Context
 
 from kurt2rt.knowledge.exchange.attachments import ROBOT, TASK
-from kurt2rt.runs.recording.budget import MEGA, Budget
-from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recording_disk import Disk, LockedFolder, RealDisk
-from kurt2rt.runs.recording.run_folder import make_room, next_run_name, segment_name, used_bytes
+from kurt2rt.runs.recording.run_folder import MEGA, Budget, make_room, next_run_name, segment_name, used_bytes
+from kurt2rt.runs.recording.run_head import RecordedRun
 from kurt2rt.runs.recording.segment import Segment
 
 _MAX_SAME_NAME = 1000

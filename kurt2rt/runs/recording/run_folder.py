@@ -1,7 +1,8 @@
-"""Folders of recorded runs: names, order and deletion of the oldest."""
+"""Folders of recorded runs: names, order, disk space and deletion of the oldest."""
 
 import contextlib
 import re
+from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +13,7 @@ from kurt2rt.runs.recording.recording_error import RecordingError
 if TYPE_CHECKING:
     from kurt2rt.runs.recording.segment_reader import SegmentReader
 
+MEGA = 1_000_000
 SEGMENT_ENDING = ".mcap"
 TICK_TOPIC = "/tick"
 """Topic of the ticks, of which a run is made."""
@@ -19,6 +21,23 @@ _RUN_NAME = re.compile(r"\d{8}T\d{6}Z-.+")
 _STAMP = "%Y%m%dT%H%M%SZ"
 _STAMP_LETTERS = 16
 _SEGMENT_NAME = re.compile(r"\d{4,}\.mcap")
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """Limits of the disk space that recordings may take."""
+
+    total_bytes: int
+    """Limit of all runs together."""
+    segment_bytes: int
+    """Size at which the next segment is started."""
+    reserve_bytes: int = 200 * MEGA
+    """Free space kept for lessons: below it recordings are deleted, then suspended."""
+
+
+def budget_of(megabytes: int) -> Budget:
+    """Return a budget of `megabytes` for all runs."""
+    return Budget(megabytes * MEGA, min(32 * MEGA, megabytes * MEGA // 10))
 
 
 def run_name(started: datetime, task: str) -> str:

@@ -1,16 +1,20 @@
-"""Head of a run: its circumstances, in the metadata of every segment."""
+"""Initial state of a run: its head, in the metadata of every segment, and what its recording begins with."""
 
 import json
+import time
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
+from hal.robot_settings import RobotSettings
 from kurt2rt.runs.recording.recording_error import RecordingError
+from simbridge.contracts.simulation import WorldView
 
 RUN_VERSION = 1
 """Version of head, entries and attachments."""
 
-RUN_METADATA = "run"
-"""Metadata record with the head, in each segment."""
+RUN_METADATA, SEGMENT_METADATA = "run", "segment"
+"""Metadata records with the head and with the number of the segment, in each segment."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,3 +73,29 @@ def decode_head(metadata: dict[str, str]) -> RunHead:
         return RunHead(**content)
     except (KeyError, ValueError, TypeError, RecursionError) as error:
         raise RecordingError(f"the head of the run cannot be read: {type(error).__name__}: {error}") from error
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedRun:
+    """Properties of one run that are fixed at its start."""
+
+    name: str
+    """Name of the run's folder."""
+    head: RunHead
+    attachments: Mapping[str, bytes]
+    """Attachments of the first segment by name."""
+    settings: RobotSettings
+    features: tuple[str, ...]
+    """Names of the situation's values."""
+    world: WorldView | None = None
+    """World of a simulated robot."""
+    began_at_ns: int | None = None
+    """Time since 1970 of the runtime clock's 0 for simulated time; None: measured at the first tick."""
+
+    def metadata(self, segment: int) -> dict[str, dict[str, str]]:
+        """Return the metadata records of the n-th segment."""
+        return {RUN_METADATA: encode_head(self.head), SEGMENT_METADATA: {"number": str(segment), "run": self.name}}
+
+    def now_ns(self) -> int:
+        """Return the time since 1970; for simulated time its beginning."""
+        return time.time_ns() if self.began_at_ns is None else self.began_at_ns

@@ -89,12 +89,10 @@ class Replay:
                 )
         except (SettingsError, KnowledgeError, UnknownActionError, UnknownBehaviourError) as error:
             raise RecordingError(f"cannot be replayed by this kurt2rt: {error}", where=run.name) from error
-        except InvalidEventError as error:
-            raise RecordingError(f"cannot be replayed: {event_error_text(error)}", where=run.name) from error
-        except CommandRefusedError as error:
-            raise RecordingError(f"cannot be replayed: {text_of(error.outcome)}", where=run.name) from error
-        except ValueError as error:
-            raise RecordingError(f"cannot be replayed: {error}", where=run.name) from error
+        except (InvalidEventError, CommandRefusedError, ValueError) as error:
+            told = text_of(error.outcome) if isinstance(error, CommandRefusedError) else str(error)
+            cause = event_error_text(error) if isinstance(error, InvalidEventError) else told
+            raise RecordingError(f"cannot be replayed: {cause}", where=run.name) from error
         if stop is not None:
             runtime.handler.stop(stop)
         return runtime

@@ -3,11 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 from config.settings import SettingsError
-from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
 from kurt2rt.knowledge.journal.loading import binding_for
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
@@ -25,13 +22,6 @@ Report = Callable[[str, float, float], None]
 _REPORT_EVERY_TICKS = 500
 _NEWEST = 20
 """Most recent runs that are searched for a compatible one."""
-
-
-class TrialKnowledge(NamedTuple):
-    """Knowledge with which a recorded run is tried again: events and statistics."""
-
-    events: tuple[TeachingEvent, ...]
-    statistics: Statistics
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.versions.editing import statistics_after
 from kurt2rt.knowledge.versions.undo import UndoPlan
 from kurt2rt.runs.recording.recording_error import RecordingError
@@ -13,7 +15,6 @@ from kurt2rt.runs.replay.run import Run
 from kurt2rt.runs.replay.trial import (
     RecentRuns,
     Report,
-    TrialKnowledge,
     compatible_runs,
     newest_compatible_run,
     progress_reporter,
@@ -24,6 +25,8 @@ LAST_S: Final = 600.0
 
 LONGEST_S: Final = 3600.0
 """Longest run that is replayed without being named: one hour takes half a minute."""
+
+_Knowledge = tuple[tuple[TeachingEvent, ...], Statistics]
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,10 +83,8 @@ def preview_on_newest(
 def _try_on(planned: UndoPlan, runs: RecentRuns, report: Report, last_s: float) -> UndoPreview:
     events, statistics = planned.events, planned.statistics
     dimensions = len(planned.binding.feature_names)
-    before = TrialKnowledge(events, statistics)
-    after = TrialKnowledge(
-        (*events, *planned.changes), statistics_after(events, planned.changes, statistics, dimensions)
-    )
+    before = events, statistics
+    after = (*events, *planned.changes), statistics_after(events, planned.changes, statistics, dimensions)
     tried, troubles = list[TrialResult](), list[str]()
     for run in runs.runs:
         try:
@@ -93,8 +94,8 @@ def _try_on(planned: UndoPlan, runs: RecentRuns, report: Report, last_s: float) 
     return UndoPreview(tuple(tried), (*runs.notes, *troubles))
 
 
-def _try_run(run: Run, before: TrialKnowledge, after: TrialKnowledge, report: Report, last_s: float) -> TrialResult:
+def _try_run(run: Run, before: _Knowledge, after: _Knowledge, report: Report, last_s: float) -> TrialResult:
     # What comes after a gap cannot be replayed: the end of such a run is where that begins.
     from_s = max(run.duration_without_gap_s - last_s, 0.0) if run.duration_s > last_s else 0.0
-    old, new = (CounterfactualPolicy(run, each.events, each.statistics) for each in (before, after))
+    old, new = (CounterfactualPolicy(run, *each) for each in (before, after))
     return TrialResult(run.name, from_s, counterfactual(run, new, old, progress_reporter(run, report), from_s))

@@ -7,9 +7,9 @@ import pytest
 
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.runs.explain.recorded import explain_run
-from kurt2rt.runs.recording.budget import budget_of
-from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recorder import open_run_recorder
+from kurt2rt.runs.recording.run_folder import budget_of
+from kurt2rt.runs.recording.run_head import RecordedRun
 from kurt2rt.runs.replay.reader import read_run
 from tests.runs.explain.helpers import ROBOT, Lesson
 from tests.runs.recording.desk_recording import ATTACHMENTS, HEAD, NAME

@@ -5,12 +5,11 @@ from pathlib import Path
 
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments
-from kurt2rt.runs.recording.budget import Budget, budget_of
 from kurt2rt.runs.recording.live_view import LiveView
-from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder
 from kurt2rt.runs.recording.recording_disk import Disk
-from kurt2rt.runs.recording.run_head import RunHead
+from kurt2rt.runs.recording.run_folder import Budget, budget_of
+from kurt2rt.runs.recording.run_head import RecordedRun, RunHead
 from simbridge.contracts.simulation import SimulatedWorld
 from tests.channel.channel_fixture import ROBOT, TASK, ChannelFixture
 

@@ -13,10 +13,9 @@ from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.exchange.attachments import ROBOT, TASK
 from kurt2rt.knowledge.journal.writer import Acknowledgement
-from kurt2rt.runs.recording.budget import Budget
 from kurt2rt.runs.recording.entries import TickEntry, tick_entry
 from kurt2rt.runs.recording.recording_disk import RealDisk, WritableFile
-from kurt2rt.runs.recording.run_folder import runs_in, segments_in
+from kurt2rt.runs.recording.run_folder import Budget, runs_in, segments_in
 from kurt2rt.runs.recording.run_head import RUN_METADATA, decode_head
 from kurt2rt.runs.recording.segment_reader import LoggedMessage, SegmentReader
 from kurt2rt.runs.recording.tick_json import decode_tick

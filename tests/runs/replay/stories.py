@@ -44,10 +44,9 @@ from kurt2rt.experiments.navigation.guided_tour import navigation_settings
 from kurt2rt.experiments.navigation.tour_guide import HOME, TourGuide
 from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments
 from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runs.recording.budget import budget_of
-from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder
-from kurt2rt.runs.recording.run_head import RUN_METADATA, RunHead
+from kurt2rt.runs.recording.run_folder import budget_of
+from kurt2rt.runs.recording.run_head import RUN_METADATA, RecordedRun, RunHead
 from kurt2rt.runs.recording.segment_reader import SegmentReader
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, view_of_tick
