@@ -15,26 +15,8 @@ MINE = story(1, (13.0, 16.0, 30.0), "forward", 5.0)
 OTHER = story(2, (10.0, 30.0, 30.0), "back", 10.0)
 
 
-def test_attribution_shares_add_up_to_one_largest_first() -> None:
-    found = distance_attribution(level(HERE, MINE, OTHER), MINE)
-    assert [(each.name, each.here, each.there) for each in found] == [("f1", 20.0, 16.0), ("f0", 10.0, 13.0)]
-    assert [each.share for each in found] == pytest.approx([16 / 25, 9 / 25])
-
-
 def test_attribution_at_the_taught_situation_is_empty() -> None:
     assert distance_attribution(level(HERE, story(1, HERE, "forward", 0.0)), story(1, HERE, "forward", 0.0)) == ()
-
-
-def test_symbols_that_differ_have_equal_shares() -> None:
-    symbols = replace(level((1.0, 2.0, 1.0, 0.0)), euclidean=False)
-    found = distance_attribution(symbols, story(1, (2.0, 2.0, 2.0, 0.0), "turn_left", 2.0))
-    assert [(each.name, each.share) for each in found] == [("f0", 0.5), ("f2", 0.5)]
-
-
-def test_contrast_for_the_second_rla_is_negative() -> None:
-    found = contrast_attribution(level(HERE, MINE, OTHER), MINE, OTHER)
-    assert [each.name for each in found] == ["f1", "f0"]
-    assert [each.pull for each in found] == pytest.approx([(100 - 16) / 93, -9 / 93])
 
 
 def test_of_two_equal_ones_nothing_speaks_for_either() -> None:

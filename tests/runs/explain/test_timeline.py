@@ -11,7 +11,7 @@ from rich.console import Console
 
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.runs.explain.terminal import render_timeline
-from kurt2rt.runs.explain.timeline import MOST_SAMPLES, Kind, build_timeline, format_summary
+from kurt2rt.runs.explain.timeline import MOST_SAMPLES, build_timeline, format_summary
 from kurt2rt.runs.explain.timeline_picture import draw_timeline
 from tests.runs.explain.helpers import ROBOT, Lesson
 from tests.teacher.helpers import correct, resume, set_phase, stop, teach
@@ -31,29 +31,6 @@ def lesson() -> Iterator[Lesson]:
     lesson.close()
 
 
-def test_stretches_follow_each_other_without_a_gap(lesson: Lesson) -> None:
-    timeline = build_timeline(lesson.entries, ROBOT)
-    told = [(stretch.kind, stretch.what, round(stretch.lasts_s, 2)) for stretch in timeline.stretches]
-    assert told == [
-        (Kind.ASKS, "asks", 0.2),
-        (Kind.DRIVES, "forward", 1.0),
-        (Kind.DRIVES, "bear_right", 0.5),
-        (Kind.STANDS, "stopped", 0.5),
-        (Kind.DRIVES, "bear_right", 0.3),
-    ]
-    for one, other in pairwise(timeline.stretches):
-        assert one.to_s == other.from_s
-    assert timeline.ticks == 250
-    assert timeline.missed == 0
-
-
-def test_lessons_are_noted_where_they_acted(lesson: Lesson) -> None:
-    notes = build_timeline(lesson.entries, ROBOT).notes
-    assert [(round(note.at_s, 2), note.kind) for note in notes] == [(0.2, "lesson"), (1.2, "lesson")]
-    for note, action in zip(notes, ("forward", "bear_right"), strict=True):
-        assert action in note.text
-
-
 def test_a_part_of_a_run_is_told_by_the_runs_own_seconds(lesson: Lesson) -> None:
     part = build_timeline(lesson.entries, ROBOT, from_s=1.0, to_s=1.5)
     assert [stretch.what for stretch in part.stretches] == ["forward", "bear_right"]
@@ -63,18 +40,6 @@ def test_a_part_of_a_run_is_told_by_the_runs_own_seconds(lesson: Lesson) -> None
     whole = build_timeline(lesson.entries, ROBOT, every=1)
     beginning = next(sample for sample in whole.samples if sample.at_s >= 1.0 - 1e-9)
     assert (part.samples[0].x_m, part.samples[0].y_m) == (beginning.x_m, beginning.y_m)
-
-
-def test_ticks_that_were_missed_are_counted(lesson: Lesson) -> None:
-    entries = lesson.entries
-    late = [entry._replace(number=entry.number - 3) for entry in entries[103:]]
-    assert build_timeline([*entries[:100], *late], ROBOT).missed == 3
-
-
-def test_ticks_that_the_recording_lacks_are_not_called_missed(lesson: Lesson) -> None:
-    entries = lesson.entries
-    timeline = build_timeline([*entries[:100], *entries[103:]], ROBOT)
-    assert (timeline.missed, timeline.unrecorded) == (0, 3)
 
 
 def said(lesson: Lesson, most: int) -> str:

@@ -66,15 +66,6 @@ def test_the_facts_are_those_of_the_decision(taught_lesson: Lesson) -> None:
     assert headline(facts) == record.decision.action
 
 
-def test_why_tells_teacher_time_and_usage(taught_lesson: Lesson) -> None:
-    story = taught_lesson.facts.basic.driver
-    assert story is not None
-    (act,) = story.acts
-    assert (story.rla_id, story.action, act.changes) == (2, "bear_right", True)
-    assert (act.teacher, act.phase, act.tick, act.stamp[:19]) == ("Ann", 2, 122, "2026-11-22T03:10:05")
-    assert (story.uses, story.uses_since) == (1, 1)
-
-
 def test_counterfactuals_are_empty_for_a_stop(lesson: Lesson) -> None:
     give(lesson).go_on(2, stop())
     assert lesson.facts.stopped

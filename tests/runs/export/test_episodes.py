@@ -47,20 +47,6 @@ def test_frames_of_each_tick_hold_readings_and_speeds() -> None:
     assert episode.columns["next.done"].nonzero()[0].tolist() == [4399]
 
 
-def test_rewards_stand_at_the_decision_that_they_are_about() -> None:
-    rewards = [each for entry in ENTRIES for each in entry.events if isinstance(each, RlaRewarded)]
-    assert len(rewards) == 4
-    wanted = np.zeros(4400)
-    for each in rewards:
-        wanted[each.decided_at_tick - 1] += each.value
-    assert only_episode(ENTRIES).columns["next.reward"].tolist() == wanted.tolist()
-    thin = only_episode(ENTRIES, 1100).columns["next.reward"]
-    assert thin.tolist() == wanted.reshape(4, 1100).sum(axis=1).tolist()
-    assert abs(thin).max() > 1
-    first = rewards[0].decided_at_tick - 1
-    assert only_episode(ENTRIES[first:]).columns["next.reward"][0] == rewards[0].value
-
-
 def test_lesson_of_the_critic_is_none_of_a_teacher() -> None:
     (entry,) = [each for each in ENTRIES if len(each.events) == 1 and isinstance(each.events[0], RlaRewarded)][:1]
     event = entry.events[0]
@@ -69,43 +55,6 @@ def test_lesson_of_the_critic_is_none_of_a_teacher() -> None:
     for events, lessons in (((event,), 1), ((by_critic,), 0), ((event, by_critic), 1)):
         episode = only_episode((entry._replace(events=events),))
         assert episode.columns["complementary_info.lessons"].tolist() == [lessons]
-
-
-def test_thinned_frames_keep_way_lessons_and_interventions() -> None:
-    every, thin = only_episode(ENTRIES), only_episode(ENTRIES, 20)
-    assert thin.frames == 220
-    assert (thin.columns[SENSORS] == every.columns[SENSORS][::20]).all()
-    # Each frame has the mean speed since the frame before, so no way is lost.
-    way_m = every.columns[STATE][1:4381].sum(axis=0) * 0.01
-    assert thin.columns[STATE][1:].sum(axis=0) * 0.2 == pytest.approx(way_m, rel=1e-4)
-    moving = only_episode(ENTRIES[2000:], 20).columns[STATE][0]
-    assert moving.tolist() == every.columns[STATE][2000].tolist()  # of its own tick: there is none before
-    assert moving.any()
-    lessons, by_hand = "complementary_info.lessons", "complementary_info.is_intervention"
-    assert thin.columns[lessons].sum() == every.columns[lessons].sum() > 40
-    assert (thin.columns[by_hand] == every.columns[by_hand].reshape(-1, 20).any(axis=1)).all()
-
-
-def test_missed_ticks_repeat_the_frame_before_them() -> None:
-    episode = only_episode(ENTRIES[2000:2500] + ENTRIES[2510:3000])
-    assert episode.frames == 1000
-    sensors = episode.columns[SENSORS]
-    assert (sensors[500:510] == sensors[499]).all()
-    assert (sensors[510] != sensors[499]).any()
-
-
-def test_a_long_gap_begins_the_next_episode() -> None:
-    first, second = read_episodes(run_of(ENTRIES[:500] + ENTRIES[600:1000]), 1)
-    assert (first.frames, second.frames) == (500, 400)
-    assert second.first_tick == 601
-    assert second.began_s == pytest.approx(6.0)
-    assert second.columns["next.done"].sum() == 1
-
-
-def test_speed_that_is_not_a_number_becomes_zero() -> None:
-    entry = ENTRIES[0]
-    wrong = entry.decision._replace(wheel_speeds=entry.decision.wheel_speeds._replace(left_m_s=float("nan")))
-    assert only_episode((entry._replace(decision=wrong), *ENTRIES[1:9])).columns[ACTION][0].tolist() == [0.0, 0.0]
 
 
 @pytest.mark.parametrize("fps", [0, 30])

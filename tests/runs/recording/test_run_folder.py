@@ -78,12 +78,3 @@ def test_room_is_made_here_and_not_where_a_link_leads(tmp_path: Path) -> None:
     assert not oldest.exists()
     assert (kept / segment_name(1)).is_file()
     assert runs_in(runs) == [runs / "20240101T000000Z-walls", newest]
-
-
-def test_empty_folders_go_and_those_with_a_note_in_them_stay(tmp_path: Path) -> None:
-    empty, noted = tmp_path / "20250101T000000Z-walls", tmp_path / "20250102T000000Z-walls"
-    empty.mkdir()
-    filled(noted)
-    (noted / "remember.txt").write_text("the one with the cat", encoding="utf-8")
-    assert make_room(tmp_path, None, 0) == 0
-    assert runs_in(tmp_path) == [noted]

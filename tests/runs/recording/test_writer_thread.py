@@ -5,18 +5,6 @@ import threading
 from kurt2rt.runs.recording.writer_thread import WriterThread
 
 
-def test_writer_thread_overrun_is_counted() -> None:
-    thread = WriterThread[int]("writer", 3, lambda: None)
-    thread.submit(1, held=2)
-    thread.submit(2, held=2)  # with those that were taken and wait still, that is one too many
-    for number in (3, 4, 5):
-        thread.submit(number)
-    assert (len(thread), thread.overruns) == (3, 2)
-    assert list(thread.pop_all()) == [1, 3, 4]
-    thread.submit(6)
-    assert (list(thread.pop_all()), thread.overruns) == ([6], 2)
-
-
 def test_at_the_end_the_writer_looks_once_more() -> None:
     written = list[int]()
 

@@ -4,7 +4,6 @@ import io
 import os
 import re
 import shutil
-import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -14,7 +13,6 @@ import pytest
 from mcap.records import McapRecord, Message
 
 from hal.robot_settings import load_robot
-from kurt2rt.cli.main import main
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
 from kurt2rt.core.rla.lesson_history import lesson_stack
 from kurt2rt.core.rla.rla import Origin, Phase, Rla
@@ -267,23 +265,6 @@ def test_an_undo_is_tried_on_the_runs_that_are_named(kurt2rt: CommandLine, knowl
     assert "not one" in said
     assert "nowhere: " in kurt2rt.refused("knowledge", "undo", knowledge, "--runs", "nowhere")
     assert folded(knowledge).last_standing_lesson == "far-2"
-
-
-def test_undo_without_recordings_says_so_and_succeeds(kurt2rt: CommandLine, knowledge: Path) -> None:
-    not_tried, undone = kurt2rt("knowledge", "undo", knowledge).out.splitlines()
-    assert "var/runs" in not_tried
-    assert undone.endswith("by Ann)")
-    assert "far-2" in undone
-
-
-def test_an_undo_whose_standard_input_was_closed_asks_nobody(knowledge: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(knowledge.parent)
-    monkeypatch.setattr(sys, "stdin", None)
-    monkeypatch.setattr(sys, "argv", ["kurt2rt", "knowledge", "undo", str(knowledge)])
-    with pytest.raises(SystemExit) as end:
-        main()
-    assert not end.value.code
-    assert folded(knowledge).last_standing_lesson == "far-1"
 
 
 class Typed(io.StringIO):

@@ -8,7 +8,7 @@ import pytest
 
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, RlaCreated, TeachingEvent
-from kurt2rt.core.rla.rla import BASIC, MID, Origin, Phase, Rla
+from kurt2rt.core.rla.rla import BASIC, Origin, Phase, Rla
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.runs.recording.recording_error import RecordingError
@@ -34,16 +34,6 @@ def taught_in(run: Run) -> list[TeachingEvent]:
 @pytest.fixture(scope="module")
 def lessons() -> dict[str, list[TeachingEvent]]:
     return {name: taught_in(stored(name)) for name in NAMES}
-
-
-@of_every_story("errand", 8.0)
-def test_counterfactual_of_equal_knowledge_has_no_difference(
-    name: str, seconds: float, lessons: dict[str, list[TeachingEvent]]
-) -> None:
-    run = stored(name, seconds)
-    found = counterfactual(run, CounterfactualPolicy(run, lessons[name]), CounterfactualPolicy(run, lessons[name]))
-    assert found.same
-    assert found.ticks == round(seconds * 100)
 
 
 @of_every_story("walls", 16.0)
@@ -90,19 +80,6 @@ def used_action(shadow: CounterfactualPolicy, rla_id: int) -> str:
     rla = shadow._system.get(rla_id)
     assert rla is not None
     return rla.action
-
-
-def test_the_mid_level_is_looked_at_by_itself(lessons: dict[str, list[TeachingEvent]]) -> None:
-    run = stored("errand", 14)
-    known = lessons["errand"]
-    whole = CounterfactualPolicy(run, known)
-    ways = [event.rla for event in known if isinstance(event, RlaCreated) and event.rla.level == MID]
-    less = [event for event in known if not isinstance(event, RlaCreated) or event.rla.level != MID]
-    found = counterfactual(run, CounterfactualPolicy(run, less), whole)
-    assert ways
-    assert found.mid_otherwise > 100
-    assert (found.other_action, found.would_ask, found.would_drive) == (0, 0, 0)
-    assert {each.level for each in found.stretches} == {MID}
 
 
 @of_every_story("walls", 36.0)

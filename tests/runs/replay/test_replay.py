@@ -11,9 +11,8 @@ from pathlib import Path
 import pytest
 
 from hal.robot import WheelSpeeds
-from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.rla.events import RlaCreated
-from kurt2rt.core.rla.rla import BASIC, MID, Phase
+from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Resume, Teach, Watch
 from kurt2rt.core.tick_record import TickRecord
@@ -27,7 +26,7 @@ from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.run import Run, RunSource
 from tests.core.basic.helpers import keep, with_repertoire
 from tests.processors import OF_2004, OF_2013
-from tests.runs.replay.stored_runs import NAMES, STORED, replay_until, stored
+from tests.runs.replay.stored_runs import NAMES, STORED, stored
 from tests.runs.replay.stories import NAME, STORIES, Scene, record_story
 
 HERE = Path(__file__).parents[3]
@@ -108,17 +107,6 @@ def test_replay_tells_zeros_by_sign_and_booleans_from_numbers() -> None:
     assert repr((found.recorded, found.replayed)) == "(-0.0, 0.0)"
     (found,) = compare(entry._replace(readings=entry.readings._replace(bumpers=False)), record)
     assert found.field == "readings.bumpers"
-
-
-def test_the_runtime_is_as_it_was_at_a_time() -> None:
-    run = stored("walls")
-    runtime, tick = replay_until(run, 31.5)
-    assert tick.entry.now_s <= 31.5 < tick.entry.now_s + 0.011
-    assert runtime.handler.phase is Phase.REINFORCEMENT
-    assert compare(*tick) == []
-    early, first = replay_until(run, -1.0)
-    assert first.entry.number == 1
-    assert early.handler.active_stop == STARTED
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,6 @@ from kurt2rt.runs.recording.run_folder import segments_in
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.verify import verify
-from tests.channel.channel_fixture import ROBOT, TASK
 from tests.runs.recording.desk_recording import empty_run, late_run
 
 
@@ -26,14 +25,6 @@ def test_run_without_its_beginning_is_refused_with_first_tick(late: Path) -> Non
         read_run(late)
     with pytest.raises(RecordingError, match=rf" tick {first} "):
         Replay(read_run(late, partial=True))
-
-
-def test_partial_run_is_read_with_its_own_settings(late: Path) -> None:
-    run = read_run(late, partial=True)
-    assert (run.robot, run.task, run.lessons) == (ROBOT, TASK, ())
-    numbers = [entry.number for entry in run.partial_entries()]
-    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
-    assert f" {numbers[0] - 1} ticks " in run.trouble
 
 
 def test_of_a_run_without_a_tick_nothing_is_the_same(tmp_path: Path) -> None:
