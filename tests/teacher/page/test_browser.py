@@ -3,8 +3,6 @@
 import itertools
 from functools import partial
 
-import pytest
-
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.teaching.commands import Resume, Undo
 from tests.teacher.page.classroom import Classroom
@@ -165,21 +163,6 @@ def test_a_page_that_is_left_lets_go_of_the_robot(a_phone: Phone, room: Classroo
     phone.finger_up()
 
 
-def test_the_keyboard_of_a_laptop_drives_and_stops(a_phone: Phone, room: Classroom) -> None:
-    phone = a_phone
-    begin(phone, room)
-    phone.turn(LAPTOP, touch=False)
-    phone.key("keyDown", "KeyW")
-    phone.wait(lambda: room.state().by_hand and room.state().left_m_s > 0.05, "the robot drives by hand")
-    phone.key("keyUp", "KeyW")
-    phone.wait(lambda: not room.state().by_hand, "the robot stands")
-    phone.wait(lambda: phone.has("#go:enabled"), "GO is offered")
-    phone.key("keyDown", "Enter")
-    phone.wait(lambda: room.state().stopped is None, "the robot may drive")
-    phone.key("keyDown", "Space")
-    phone.wait(lambda: room.state().stopped == ActiveStop(StopReason.SAID_STOP, "local"), "the robot was stopped")
-
-
 def stand(phone: Phone, room: Classroom) -> None:
     """Stop the robot, and let it drive again: whatever a key does after it is seen."""
     phone.touch("#stop")
@@ -190,42 +173,28 @@ def stand(phone: Phone, room: Classroom) -> None:
     phone.wait(lambda: phone.has("#go:enabled"), "GO is offered")
 
 
-def test_enter_belongs_to_the_button_that_has_the_focus(a_phone: Phone, room: Classroom) -> None:
-    phone = a_phone
-    begin(phone, room)
-    stand(phone, room)
-    phone.turn(LAPTOP, touch=False)
-    phone.run("document.querySelector('#show-keys').focus()")
-    phone.key("keyDown", "Enter")
-    phone.wait(lambda: phone.shows("#keys"), "the list of keys opens")
-    phone.key("keyDown", "Enter")  # its button has the focus
-    phone.wait(lambda: not phone.shows("#keys"), "the list of keys closes")
-    assert room.state().stopped == ActiveStop(StopReason.SAID_STOP, "local")
-    phone.run("document.activeElement.blur()")
-    phone.key("keyDown", "Enter")
-    phone.wait(lambda: room.state().stopped is None, "the robot may drive")
-    phone.run("document.querySelector('#stop').focus()")
-    phone.key("keyDown", "Enter")
-    phone.wait(lambda: room.state().stopped == ActiveStop(StopReason.SAID_STOP, "local"), "the robot was stopped")
-
-
-@pytest.mark.parametrize(
-    "swallowed",
-    [
-        "dispatchEvent(new KeyboardEvent('keydown', {key: 'Meta', code: 'MetaLeft', metaKey: true}))",
-        "document.querySelector('#stage').dispatchEvent(new MouseEvent('contextmenu', {bubbles: true}))",
-    ],
-    ids=["command", "menu"],
-)
-def test_a_key_whose_end_the_browser_keeps_to_itself_lets_go(a_phone: Phone, room: Classroom, swallowed: str) -> None:
+def test_keyboard_drives_while_a_key_is_held_and_stops(a_phone: Phone, room: Classroom) -> None:
     phone = a_phone
     begin(phone, room)
     phone.turn(LAPTOP, touch=False)
+    # The browser keeps the end of a key to itself while another key or a menu is open.
     phone.key("keyDown", "KeyW")
-    phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
-    phone.run(swallowed)
+    phone.wait(lambda: room.state().by_hand and room.state().left_m_s > 0.05, "the robot drives by hand")
+    phone.run("document.querySelector('#stage').dispatchEvent(new MouseEvent('contextmenu', {bubbles: true}))")
     phone.wait(lambda: not room.state().by_hand, "the robot stands")
     phone.key("keyUp", "KeyW")
+    phone.wait(lambda: phone.has("#go:enabled"), "GO is offered")
+    phone.key("keyDown", "Enter")
+    phone.wait(lambda: room.state().stopped is None, "the robot may drive")
+    phone.key("keyDown", "Space")
+    phone.wait(lambda: room.state().stopped == ActiveStop(StopReason.SAID_STOP, "local"), "the robot was stopped")
+    phone.wait(lambda: phone.has("#go:enabled"), "GO is offered")
+    phone.run("document.querySelector('#show-keys').focus()")
+    phone.key("keyDown", "Enter")  # it belongs to the button that has the focus
+    phone.wait(lambda: phone.shows("#keys"), "the list of keys opens")
+    phone.key("keyDown", "Enter")
+    phone.wait(lambda: not phone.shows("#keys"), "the list of keys closes")
+    assert room.state().stopped == ActiveStop(StopReason.SAID_STOP, "local")
 
 
 def test_two_quick_touches_while_it_asks_are_one_lesson(a_phone: Phone, room: Classroom) -> None:

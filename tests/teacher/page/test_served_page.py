@@ -17,6 +17,7 @@ import pytest
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidStatus
 
+from kurt2rt.channel.protocol.limits import MOST_UPLOAD_BYTES
 from kurt2rt.teacher.page.access import Access
 from kurt2rt.teacher.page.app import STATIC
 from kurt2rt.teacher.page.public_address import PageError, PublicAddress
@@ -316,3 +317,36 @@ def test_page_listens_by_the_family_that_is_there(
     remove_family(monkeypatch, missing, sockets_open=sockets_open)
     with listen(0, everywhere=everywhere) as listener:
         assert listener.family is not missing
+
+
+COPY, COPIED = "wall-following-20261122T180000.zip", bytes(range(256)) * 20
+
+
+async def test_an_upload_needs_the_cookie_and_a_page_of_ours() -> None:
+    async with served() as page:
+        ours = {**page.cookie, "Origin": f"http://127.0.0.1:{page.port}"}
+        assert (await page.get("/upload", {"Origin": ours["Origin"]}, method="POST", body=b"PK")).status == 403
+        elsewhere = {**page.cookie, "Origin": "http://evil.example"}
+        assert (await page.get("/upload", elsewhere, method="POST", body=b"PK")).status == 403
+        assert not page.robot.told_of("upload")
+        got = await page.get("/upload", ours, method="POST", body=b"PK")
+        assert (got.status, len(json.loads(got.body)["upload"])) == (200, 16)
+        assert (await page.get("/upload", ours, method="POST", body=b"")).status == 400
+        large = await page.get("/upload", ours, method="POST", body=bytes(MOST_UPLOAD_BYTES + 1))
+        assert large.status == 413
+        assert "8 MB" in large.body
+        assert len(page.robot.told_of("upload")) == 1
+
+
+async def test_a_download_needs_the_cookie_and_a_file_of_the_robot() -> None:
+    async with served() as page:
+        page.robot.files[COPY] = COPIED
+        assert (await page.get(f"/files/{COPY}")).status == 403
+        got = await page.get(f"/files/{COPY}", page.cookie)
+        assert (got.status, got.content) == (200, COPIED)
+        assert got.headers["Content-Disposition"] == f"attachment; filename*=UTF-8''{COPY}"
+        missing = await page.get("/files/robot.key", page.cookie)
+        assert missing.status == 404
+        assert missing.body
+        page.robot.silent = True
+        assert (await page.get(f"/files/{COPY}", page.cookie)).status == 504

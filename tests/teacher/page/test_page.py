@@ -1,0 +1,591 @@
+"""The page in a real browser, with a robot that answers as the test says: what each control sends and shows."""
+
+import hashlib
+import io
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from matplotlib.figure import Figure
+
+from hal.robot_settings import load_robot
+from kurt2rt.channel.protocol.exam_status import ExamStatus, WorldVerdict
+from kurt2rt.channel.protocol.hello import AppraisalName, MidIntroduction
+from kurt2rt.channel.protocol.lesson_list import Contradicting
+from kurt2rt.channel.protocol.state import HoldState, ShownState
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.goal import NamedGoal
+from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.perception.sensor_words import infrared_law, words_for
+from kurt2rt.core.teaching.progress import Progress
+from kurt2rt.core.teaching.question import FeatureDifference
+from tests.channel.states import COMMANDS
+from tests.runs.explain.helpers import facts, level, story
+from tests.service.health.reports import ILL, SILENT
+from tests.teacher.page.axe import violations
+from tests.teacher.page.fake_robot import A_HELLO, A_LESSON, FakeRobot
+from tests.teacher.page.lesson import Lesson
+from tests.teacher.page.phone import LAPTOP, PORTRAIT, Phone
+from tests.teacher.page.screens import LEAST_CONTRAST, TEXTS, on_each_screen
+
+ACTIONS = (
+    *("forward", "back", "stand", "bear_left", "bear_right", "curve_left", "curve_right", "spin_left", "spin_right"),
+    *("quarter_turn_left", "quarter_turn_right", "along_left_wall", "along_right_wall"),
+    *("sharp_left", "sharp_right", "flee", "whirl_left", "whirl_right"),
+)
+STANDS = {"action": None, "rla": None, "left_m_s": 0.0, "right_m_s": 0.0}
+SPIN_LEFT = "[data-action=spin_left]"
+
+
+def of_robot(**greeting: Any) -> Callable[[FakeRobot], None]:
+    """Return the preparation of a robot with another description."""
+
+    def prepare(robot: FakeRobot) -> None:
+        robot.greeting = replace(A_HELLO, **greeting)
+
+    return prepare
+
+
+# Lessons and holds.
+
+
+def finger_down(lesson: Lesson) -> None:
+    """Put a finger on the button, and wait until its action is held."""
+    lesson.phone.finger_down(*lesson.phone.middle(SPIN_LEFT))
+    lesson.phone.wait(lambda: lesson.told("hold"), "the action is held")
+
+
+def test_button_held_holds_and_tapped_corrects(a_lesson: Lesson) -> None:
+    phone = a_lesson.phone
+    a_lesson.begin(standing=Standing())
+    finger_down(a_lesson)
+    assert phone.has(f"{SPIN_LEFT}.held")
+    phone.wait(lambda: len(a_lesson.told("hold")) > 5, "it is sent again and again")
+    phone.finger_up()
+    phone.wait(lambda: a_lesson.robot.told_of("let_go"), "it is released")
+    count = len(a_lesson.told("hold"))
+    phone.pass_time(0.2)
+    assert a_lesson.told("hold") == ["spin_left"] * count
+    assert a_lesson.told("/correct") == [], "a hold is no tap"
+    phone.touch(SPIN_LEFT)
+    phone.wait(lambda: a_lesson.robot.told_of("/correct"), "a correction")
+    assert a_lesson.robot.told_of("/correct")[0][3] is True, "a late one"
+    assert len(a_lesson.told("hold")) == count
+
+
+def test_hold_ends_with_the_page_and_does_not_come_back(a_lesson: Lesson) -> None:
+    a_lesson.begin(standing=Standing())
+    finger_down(a_lesson)
+    a_lesson.phone.run("dispatchEvent(new Event('blur'))")
+    a_lesson.phone.wait(lambda: a_lesson.robot.told_of("let_go"), "it is released")
+    count = len(a_lesson.told("hold"))
+    a_lesson.phone.pass_time(0.2)
+    assert len(a_lesson.told("hold")) == count
+    a_lesson.phone.finger_up()
+
+
+def test_lessons_of_a_hold_are_counted_and_undone_together(a_lesson: Lesson) -> None:
+    phone, held = a_lesson.phone, HoldState("local", "spin_left", "local-hold-7", 3, True)
+    a_lesson.begin(standing=Standing())
+    finger_down(a_lesson)
+    a_lesson.show(hold=held, by_hand=True)
+    a_lesson.reads("#said", "spin left is held, lessons: 3")
+    phone.finger_up()
+    a_lesson.show(hold=replace(held, lessons=4, on=False), by_hand=False)
+    a_lesson.reads("#said", "spin left was held, lessons: 4")
+    phone.touch("#undo-hold")
+    phone.wait(lambda: a_lesson.told("/undo") == ["local-hold-7"], "all are undone")
+
+
+def test_lesson_that_contradicts_is_shown_and_undone_alone(a_lesson: Lesson) -> None:
+    slip = Contradicting("local-hold-1/95", 7, "whirl_left", 4, ("forward", "bear_left"))
+    hold = A_LESSON._replace(command_id="local-hold-1", text="held forward, whirl_left: 2 lessons", against=(slip,))
+
+    def with_a_slip(robot: FakeRobot) -> None:
+        robot.newest_lessons = (hold,)
+
+    a_lesson.begin(with_a_slip, standing=Standing())
+    a_lesson.phone.touch("#tab-lessons")
+    a_lesson.reads("#lesson-list .contradicts", "RLA 7 says whirl left")
+    a_lesson.phone.touch("#lesson-list .contradicts button")
+    a_lesson.phone.touch("#lesson-list .contradicts button")
+    a_lesson.phone.wait(lambda: a_lesson.told("/undo") == [slip.command_id], "the one lesson is undone")
+    a_lesson.phone.touch("#tab-teach")
+
+
+def test_shown_segments_are_taught_but_for_those_left_out(a_lesson: Lesson) -> None:
+    phone = a_lesson.phone
+    shown = ShownState("local", 91, ("forward", "spin_left", "forward"), (100, 280, 340), (180, 60, 240))
+    a_lesson.begin(shown=shown, stopped=ActiveStop(StopReason.LET_GO, "local"), left_m_s=0.0, right_m_s=0.0)
+    phone.touch("#tab-drive")
+    phone.wait(lambda: phone.shows("#shown"), "the drive is offered")
+    phone.touch("#shown-list button:nth-child(2)")
+    assert phone.text("#teach-shown") == "Teach 2 of 3"
+    phone.touch("#teach-shown")
+    phone.wait(lambda: a_lesson.robot.told_of("/shown"), "the confirmation is sent")
+    assert a_lesson.robot.told_of("/shown") == [("/shown", 91, (0, 2))]
+
+
+# The past.
+
+DRIVE_FROM, DRIVE_TO, EACH = 1000, 1600, 100
+_PICK = """
+const slider = document.querySelector('#rewind-time');
+slider.value = arguments[0];
+slider.dispatchEvent(new Event('input'));
+"""
+_TOUCH_AND_STOP = """
+document.querySelector('[data-action=spin_left]').click();
+document.querySelector('#stop').dispatchEvent(new PointerEvent('pointerdown'));
+document.querySelector('#stop').click();
+"""
+
+
+@pytest.fixture
+def past(a_lesson: Lesson) -> Lesson:
+    """Return a lesson in rewind, whose robot drove for 6 s, each second by another RLA."""
+    a_lesson.begin(standing=Standing(), tick=DRIVE_FROM, left_m_s=0.3, right_m_s=0.3)
+    for tick in range(DRIVE_FROM + EACH, DRIVE_TO + 1, EACH):
+        a_lesson.show(tick=tick, rla=tick // EACH, clock_s=tick / EACH)
+        a_lesson.reads("#clock", f"0:{tick // EACH}")
+    a_lesson.phone.touch("#rewind")
+    a_lesson.phone.wait(lambda: a_lesson.phone.shows("#rewind-bar"), "the past is shown")
+    a_lesson.show(left_m_s=0.0, right_m_s=0.0)
+    return a_lesson
+
+
+def test_rewind_corrects_the_picked_tick_and_drives_on(past: Lesson) -> None:
+    phone = past.phone
+    assert past.robot.told_of("stop")
+    past.show(tick=DRIVE_TO + 6000)  # the teacher thinks
+    phone.run(_PICK, -3)
+    past.reads("#rewind-says", "3.0 s before it stood: RLA 13 ")
+    phone.touch("#rewind-go")
+    phone.touch(SPIN_LEFT)
+    phone.wait(lambda: past.robot.told_of("/resume"), "the robot is told to drive on")
+    ((_, action, tick),) = past.robot.told_of("/correct")
+    assert action == "spin_left"
+    assert abs(tick - 1300) < EACH / 2
+    names = [command[0] for command in past.robot.told]
+    assert names.index("/correct") < names.index("/resume")
+    phone.wait(lambda: phone.shows("#why"), "the present is shown")
+
+
+def test_then_go_does_not_lift_a_stop_after_the_touch(past: Lesson) -> None:
+    past.phone.touch("#rewind-go")
+    before = len(past.robot.told_of("stop"))
+    # Both in one turn of the page's loop, so that the stop comes before the answer to the lesson.
+    past.phone.run(_TOUCH_AND_STOP)
+    past.phone.wait(lambda: past.robot.told_of("/correct"), "the lesson is given")
+    past.phone.wait(lambda: len(past.robot.told_of("stop")) > before, "STOP is sent")
+    past.phone.pass_time(0.3)
+    assert not past.robot.told_of("/resume")
+    past.phone.touch("#rewind-close")
+
+
+# Gamepad.
+
+# One pad of the standard mapping, as the browser would tell of it.
+PAD = """
+window.pad = {index: 0, id: "pad", connected: true, mapping: "standard", axes: [0, 0, 0, 0], timestamp: 0,
+  buttons: Array.from({length: 17}, () => ({pressed: false, touched: false, value: 0}))};
+window.pads = [null];
+navigator.getGamepads = () => pads;
+window.tellPad = (kind) => {
+  const event = new Event(kind);
+  event.gamepad = pad;
+  dispatchEvent(event);
+};
+window.shoulder = (held) => { pad.buttons[5] = {pressed: held, touched: held, value: Number(held)}; };
+document.hasFocus = () => true;
+pads[0] = pad;
+tellPad('gamepadconnected');
+"""
+UNPLUG = "pads[0] = null; delete document.visibilityState; tellPad('gamepaddisconnected');"
+
+
+@pytest.fixture
+def driving(a_lesson: Lesson) -> Iterator[Lesson]:
+    """Return a page with a new gamepad, whose buttons the page has seen released."""
+    a_lesson.begin()
+    a_lesson.phone.run(PAD)
+    a_lesson.reads("#said", "gamepad: hold a shoulder button")
+    a_lesson.phone.pass_time(0.2)
+    yield a_lesson
+    a_lesson.phone.run(UNPLUG)
+    a_lesson.phone.wait(lambda: not a_lesson.robot.pressing, "it lets go of the robot of this test")
+
+
+def presses(lesson: Lesson) -> list[tuple[object, ...]]:
+    return [each for each in lesson.robot.told if each[0] == "press"]
+
+
+def hold_shoulder(lesson: Lesson) -> None:
+    phone = lesson.phone
+    phone.run("shoulder(false)")
+    phone.pass_time(0.2)
+    phone.run("pad.axes = [0, -1, 0, 0]; shoulder(true)")
+    phone.wait(lambda: lesson.robot.pressing and phone.has("#stick.held"), "the pad drives")
+
+
+def test_gamepad_drives_while_its_shoulder_button_is_held(driving: Lesson) -> None:
+    driving.phone.run("pad.axes = [0, -1, 0, 0]")
+    driving.phone.pass_time(0.2)
+    assert presses(driving) == [], "the stick alone drives nothing"
+    hold_shoulder(driving)
+    assert presses(driving)[-1] == ("press", 0.3, 0.3)
+    driving.phone.run("shoulder(false)")
+    driving.phone.wait(lambda: not driving.robot.pressing, "it lets go")
+
+
+@pytest.mark.parametrize(
+    "end",
+    [
+        "pad.connected = false; pads[0] = null; tellPad('gamepaddisconnected')",
+        "Object.defineProperty(document, 'visibilityState', {value: 'hidden', configurable: true});"
+        "document.dispatchEvent(new Event('visibilitychange'))",
+    ],
+    ids=["disconnected", "hidden"],
+)
+def test_gamepad_lets_go_for_good_until_pressed_again(driving: Lesson, end: str) -> None:
+    hold_shoulder(driving)
+    phone = driving.phone
+    phone.run(end)
+    phone.wait(lambda: not driving.robot.pressing, "it lets go")
+    # The button is still held when all is well again: that is no new press.
+    phone.run("pad.connected = true; delete document.visibilityState; pads[0] = pad; tellPad('gamepadconnected');")
+    count = len(presses(driving))
+    phone.pass_time(0.2)
+    assert len(presses(driving)) == count
+    hold_shoulder(driving)
+
+
+# Questions and standstills.
+
+QUESTION = (
+    FeatureDifference("maximum front", 441.0, 108.0),
+    FeatureDifference("s9", 441.0, 108.0),
+    FeatureDifference("s14", 70.0, 400.0),
+    FeatureDifference("s17", 160.0, 160.4),
+)
+ASKS = {"cause": "unknown", "action": None, "rla": None, "distance": 1100.0, "question": QUESTION}
+_GO = "const go = document.querySelector('#go'); return [go.disabled, getComputedStyle(go).outlineStyle];"
+
+
+def test_latched_guard_is_the_reason_to_stand_and_go_stands_out(a_lesson: Lesson) -> None:
+    phone = a_lesson.phone
+    a_lesson.begin(standing=Standing())
+    assert phone.run(_GO) == [True, "none"]
+    latched = Standing(StandReason.COMPUTER_TOO_SLOW, True, stall_s=0.12)
+    a_lesson.show(standing=latched, left_m_s=0.0, right_m_s=0.0)  # cause and action stay those of the rule
+    a_lesson.reads("#sentence", "Stands: the computer was too slow for 0.1 s. GO lets it drive on")
+    assert phone.run(_GO) == [False, "solid"]
+    phone.touch("#go")
+    phone.wait(lambda: a_lesson.robot.told.count(("/resume",)) == 1, "the robot may drive on")
+
+
+def test_question_is_announced_once_with_places_and_centimetres(a_lesson: Lesson) -> None:
+    a_lesson.begin(of_robot(law=infrared_law(load_robot().infrared)))
+    phone, said = a_lesson.phone, "return document.querySelector('#announce').textContent;"
+    live = phone.run("return [...document.querySelectorAll('[role=status], [aria-live]')].map((e) => e.id);")
+    assert (live, phone.run(said)) == (["announce"], "")
+    a_lesson.show(**ASKS)
+    phone.wait(lambda: phone.run(said) == "I don't know this situation, teach me", "the question is said")
+    words = words_for(load_robot().infrared)
+    # The nearest in front is that sensor, and the rear left edge reads the same to the centimetre.
+    assert phone.texts("#differences li") == [
+        words.difference(each.name, each.here, each.in_condition) for each in QUESTION[1:3]
+    ]
+    a_lesson.show(cause="rla", action="forward", rla=1, question=(), distance=300.0)
+    phone.wait(lambda: phone.run(said) == "", "it asks no more")
+
+
+def test_open_question_keeps_its_words_while_noise_lets_it_drive(a_lesson: Lesson) -> None:
+    phone = a_lesson.phone
+    a_lesson.begin(standing=Standing())
+    phone.run("window.heldMs = performance.now() + 5000; performance.now = () => window.heldMs;")
+    asks = Standing(StandReason.ASKS, asks=True)
+    a_lesson.show(cause="unknown", action=None, rla=None, standing=asks, distance=710.0)
+    a_lesson.reads("#sentence", "I don't know this situation, teach me")
+    phone.run("window.heldMs += 1000;")
+    a_lesson.show(clock_s=3600.0, cause="rla", action="forward", rla=1, distance=690.0)
+    a_lesson.reads("#clock", "60:00")
+    assert phone.text("#sentence") == "I don't know this situation, teach me"
+    assert phone.text("#gauge-text") == "710 of R 700"
+    a_lesson.show(cause="rla", action="forward", rla=2, distance=0.0, standing=Standing(), lessons=2)
+    a_lesson.reads("#sentence", "RLA 2 ")
+    phone.run("delete performance.now;")
+
+
+# The mid level.
+
+READY = "return !document.querySelector('.turned, [aria-busy=true]');"
+
+
+@pytest.fixture
+def junction(a_lesson: Lesson) -> Lesson:
+    def prepare(robot: FakeRobot) -> None:
+        mid = MidIntroduction("history", 12, 6.0)
+        turns = ("straight_on", "turn_left", "turn_right")
+        robot.greeting = replace(A_HELLO, actions=ACTIONS, behaviours=turns, mid=mid, seeks=True)
+        robot.named = ("door", "window")
+
+    a_lesson.begin(prepare, behaviour="turn_left", mid=COMMANDS)
+    a_lesson.reads("#sentence", "RLA 1 of turn left does forward")
+    return a_lesson
+
+
+def touch_way(lesson: Lesson, way: str) -> None:
+    """Touch one of the big buttons, once it may be touched."""
+    lesson.phone.wait(lambda: lesson.phone.run(READY), "it may be taught")
+    lesson.phone.touch(f"[data-way={way}]")
+
+
+def test_mid_level_asks_and_is_answered_corrected_and_overridden(junction: Lesson) -> None:
+    phone, robot = junction.phone, junction.robot
+    asks = replace(COMMANDS, rla=None, distance=7.0, asks=True, nearest_behaviour="turn_right")
+    near = {"nearest": 12, "nearest_action": "turn_right", "distance": 7.0, "radius": 6.0}
+    junction.show(cause="unknown", mid=asks, asks_at="mid", **STANDS, **near)
+    junction.reads("#sentence", "Which way? I don't know, teach me")
+    assert phone.text("#gauge-text") == "7 of 12 differ, R 6"
+    on_each_screen(phone, "13-which-way")
+    touch_way(junction, "turn_right")
+    phone.wait(lambda: robot.told_of("/answer"), "an answer to the mid level")
+    drives = {"cause": "rla", "action": "forward", "rla": 1, "left_m_s": 0.3, "right_m_s": 0.3}
+    junction.show(mid=COMMANDS, asks_at="basic", **drives, nearest=1, distance=300.0, radius=700.0)
+    junction.reads("#mid-sentence", "turn left because mid-level RLA 12: 2 of 12 differ, R 6")
+    touch_way(junction, "straight_on")
+    phone.wait(lambda: robot.told_of("/correct"), "a correction of the mid level")
+    phone.touch("[data-meant=also]")
+    touch_way(junction, "turn_right")
+    phone.wait(lambda: len(robot.told_of("/answer")) == 2, "an alternative")
+    phone.touch("[data-meant=once]")
+    touch_way(junction, "turn_right")
+    phone.wait(lambda: robot.told_of("/pursue") == [("/pursue", "turn_right")], "no lesson")
+    answers = [(each[1], *each[3:]) for each in robot.told_of("/answer")]
+    assert answers == [("turn_right", "mid", False), ("turn_right", "mid", True)]
+    assert [(each[1], *each[3:]) for each in robot.told_of("/correct")] == [("straight_on", "mid")]
+
+
+def test_places_get_names_and_are_sought(junction: Lesson) -> None:
+    phone = junction.phone
+    phone.touch("#tab-goals")
+    junction.reads("#goal-list", "window")
+    phone.write("#situation-name", "lift")
+    phone.touch("#name-situation")
+    phone.wait(lambda: junction.told("/name") == ["lift"], "this place has a name")
+    junction.robot.named = ("door", "lift", "window")
+    junction.show(lessons=2)
+    junction.reads("#goal-list", "lift")
+    phone.touch("[data-name=door] [aria-label='Seek door']")
+    phone.wait(lambda: junction.told("/seek") == [NamedGoal("door")], "it is to go there")
+    junction.show(goal="door", plan=("turn_left", "straight_on"), plan_says="on the way to door: 2 ways left")
+    junction.reads("#goal-now", "on the way to door: 2 ways left")
+    assert phone.text("#plan").endswith("turn left, straight on")
+    phone.touch("[data-name=lift] [aria-label^='Is here']")
+    assert junction.told("/here") == []
+    phone.touch("[data-name=lift] [aria-label^='Is here']")
+    phone.wait(lambda: junction.told("/here") == ["lift"], "it was set down there")
+    phone.touch("#stop-seeking")
+    phone.wait(lambda: ("/seek/stop",) in junction.robot.told, "no goal any more")
+    phone.touch("#tab-teach")
+
+
+# The critic.
+
+
+def test_phase_4_rewards_teach_the_critic_and_show_agreement(a_lesson: Lesson) -> None:
+    phone = a_lesson.phone
+    appraisals = (AppraisalName("good", 1), AppraisalName("bad", -1), AppraisalName("neutral", 0))
+    prepare = of_robot(actions=ACTIONS, appraisals=appraisals, trusted_from=0.8)
+    a_lesson.begin(prepare, phase=4, opinion=1, opinion_of=40, signals_missing=(6, 2))
+    a_lesson.reads("#opinion", "critic: thinks good")
+    assert phone.text("#trusted").startswith("not ")
+    phone.touch("[data-appraisal=bad]")
+    a_lesson.reads("#said", "/appraise done")
+    phone.key("keyDown", "0")
+    phone.wait(lambda: a_lesson.told("/appraise") == ["bad", "neutral"], "a key teaches it, too")
+    assert a_lesson.told("/reward") == []
+    a_lesson.show(opinion=-1, opinion_of=41, agreement=0.87, trusted=True, signals_missing=(0, 0))
+    a_lesson.reads("#agreement-text", "0.87")
+    assert phone.text("#trusted") == "trusted"
+    on_each_screen(phone, "11-phase-4")
+    a_lesson.show(phase=3, value=-0.08)
+    phone.wait(lambda: not phone.shows("#critic"), "it is hidden before phase 4")
+    phone.touch("#blame")
+    phone.wait(lambda: a_lesson.told("/reward") == [-1], "a signal is the robot's reward again")
+
+
+# Tables: health, why, exam, files, simulation.
+
+
+def test_faults_are_coloured_with_time_and_cure(a_lesson: Lesson) -> None:
+    phone = a_lesson.phone
+    a_lesson.begin()
+    assert a_lesson.robot.state is not None
+    later = a_lesson.robot.state.tick + 100
+    a_lesson.robot.report = replace(ILL, tick=later)
+    a_lesson.show(tick=later)
+    a_lesson.reads("#health", "sensors silent, …")
+    assert phone.run("return document.querySelector('#health').className;") == "warns urgent"
+    phone.touch("#link")
+    a_lesson.reads("#health-troubles", f"{SILENT.what} (for 2 s): {SILENT.to_do}")
+    on_each_screen(phone, "12-health")
+    phone.touch("#stop")  # which is never covered
+    phone.wait(lambda: a_lesson.robot.told_of("stop"), "the robot is stopped")
+    phone.touch("#close-health")
+    assert not phone.shows("#health-table")
+
+
+def test_a_touch_on_its_sentence_tells_why_it_does_so(a_lesson: Lesson) -> None:
+    phone, nearest = a_lesson.phone, story(1, (120.0, 80.0), "forward", 5.0)
+    a_lesson.begin()
+    a_lesson.robot.silent = True
+    phone.touch("#sentence")
+    a_lesson.reads("#explanation-says", "no answer")
+    a_lesson.robot.silent = False
+    a_lesson.robot.decided = facts(level((123.0, 84.0), nearest, story(2, (90.0, 88.0), "spin_left", 34.0)))
+    phone.touch("#explain-again")
+    a_lesson.reads("#explanation-lines", "The runner-up of 2 is RLA 2 (spin_left) at 34")
+    rows = phone.text("#explanation-features").splitlines()
+    assert rows[1].split()[1:] == ["84", "80", "64", "%"]  # after a heading, the feature that differs more
+    phone.touch("#close-explanation")
+    assert not phone.shows("#explanation")
+
+
+def picture() -> bytes:
+    content = io.BytesIO()
+    Figure(figsize=(2.0, 2.0)).savefig(content, format="png")
+    return content.getvalue()
+
+
+def test_an_exam_ends_in_a_picture_and_a_verdict(a_lesson: Lesson) -> None:
+    phone = a_lesson.phone
+    verdicts = (
+        WorldVerdict("A", True, "4.86 of the teacher's 5.00 laps, no collision"),
+        WorldVerdict("cave", False, "not judged: the policy itself gets nowhere here (0.02 laps)", judged=False),
+    )
+    over = ExamStatus(False, 1.0, "Passed in 1 of 1 worlds; 1 not judged.", verdicts, "wall-following.png")
+    a_lesson.begin()
+    a_lesson.robot.files[over.picture] = picture()
+    phone.touch("#tab-more")
+    a_lesson.robot.examined = ExamStatus(True, 0.42, "exam without teacher, world b")
+    phone.touch("#examine")
+    a_lesson.reads("#exam-says", "42 %: exam without teacher, world b")
+    assert a_lesson.robot.state is not None
+    a_lesson.robot.examined = over
+    a_lesson.show(tick=a_lesson.robot.state.tick + 50)
+    a_lesson.reads("#exam-verdict", over.text)
+    a_lesson.reads("#exam-worlds", "World cave: not judged")
+    loaded = "const e = document.querySelector('#exam-picture'); return e.complete && e.naturalWidth;"
+    phone.wait(lambda: phone.run(loaded), "the picture is there")
+    on_each_screen(phone, "22-exam")
+    phone.touch("#close-exam")
+    assert not phone.shows("#exam-result")
+
+
+def test_a_copy_is_downloaded_whole_and_another_loaded(a_lesson: Lesson, tmp_path: Path) -> None:
+    phone, name, content = a_lesson.phone, "walls.zip", bytes(range(256)) * 20
+    a_lesson.begin()
+    a_lesson.robot.files[name] = content
+    a_lesson.robot.answers_with = {"name": name, "sha256": "ab" * 32, "size": len(content)}
+    phone.touch("#tab-more")
+    phone.driver.execute_cdp_cmd(
+        "Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(tmp_path), "eventsEnabled": False}
+    )
+    phone.touch("#export")
+    phone.wait((tmp_path / name).exists, "the browser has stored it")
+    assert (tmp_path / name).read_bytes() == content
+    assert a_lesson.told("/export") == ["package"]
+    phone.write("#load-file", str(tmp_path / name))
+    phone.wait(lambda: a_lesson.robot.told_of("/load"), "it is uploaded")
+    ((_, uploaded_as, uploaded),) = a_lesson.robot.told_of("upload")
+    assert uploaded == content
+    assert a_lesson.robot.told_of("/load") == [("/load", uploaded_as, hashlib.sha256(content).digest())]
+    a_lesson.robot.refuses = "the file is too large (at most 8000000 bytes)"
+    phone.write("#load-file", str(tmp_path / name))
+    a_lesson.reads("#said", f"{name}: the file is too large (at most 8000000 bytes)")
+
+
+def choose(phone: Phone, selector: str, value: str) -> None:
+    phone.run("document.querySelector(arguments[0]).value = arguments[1];", selector, value)
+    phone.run("document.querySelector(arguments[0]).dispatchEvent(new Event('input'));", selector)
+
+
+def test_simulation_and_speed_of_lessons_are_chosen_in_more(a_lesson: Lesson) -> None:
+    phone = a_lesson.phone
+    a_lesson.begin(standing=Standing(), phase=2)
+    phone.touch("#tab-more")
+    phone.wait(lambda: phone.run("return document.querySelector('#sim-task').value;"), "it knows what is simulated")
+    choose(phone, "#lesson-speed", "60")
+    phone.wait(lambda: a_lesson.told("/lesson/speed") == [60], "the robot is told")
+    a_lesson.show(lesson_speed=0.35)
+    a_lesson.reads("#phase-name", "slow, 35 %")
+    assert phone.run("return document.querySelector('#sim-change').disabled;")
+    choose(phone, "#sim-task", "eight")
+    choose(phone, "#sim-world", "rooms")
+    choose(phone, "#sim-number", "9007")
+    on_each_screen(phone, "23-simulation")
+    phone.touch("#sim-change")
+    run = "/simulation/run"
+    phone.wait(lambda: a_lesson.robot.told_of(run) == [(run, "rooms-9007", "eight", False)], "the next run is wanted")
+    phone.touch("#sim-fresh")
+    assert "Sure?" in phone.text("#sim-fresh")
+    assert len(a_lesson.told(run)) == 1
+    phone.touch("#sim-fresh")
+    phone.wait(lambda: a_lesson.robot.told_of(run)[1:] == [(run, None, None, True)], "a new knowledge file is wanted")
+
+
+# For all people.
+
+
+def test_page_in_its_main_states_breaks_no_rule_of_axe(a_lesson: Lesson) -> None:
+    phone = a_lesson.phone
+    a_lesson.begin(of_robot(what="Teach it to follow the wall on its left"), progress=Progress(60, 87, 3), **ASKS)
+    a_lesson.reads("#differences", "front left")
+    assert_accessible(phone, "asks")
+    a_lesson.show(cause="rla", action="forward", rla=1, question=())
+    phone.touch("#tab-drive")
+    assert_accessible(phone, "is driven")
+    phone.touch("#tab-more")
+    phone.touch("#show-bubbles")
+    assert_accessible(phone, "explains itself")
+    phone.touch("#bubble-close")
+    phone.turn(LAPTOP, touch=False)
+    phone.key("keyDown", "?")
+    phone.wait(lambda: phone.shows("#keys"), "the list of keys")
+    assert_accessible(phone, "lists its keys")
+    phone.turn(PORTRAIT)
+
+
+def assert_accessible(phone: Phone, what: str) -> None:
+    """Assert axe's rules, and more contrast than they want in both themes: all else is the same in the dark."""
+    assert violations(phone) == [], what
+    assert_readable(phone.run(TEXTS), what)
+    with phone.in_the_dark():
+        assert_readable(phone.run(TEXTS), f"{what}, dark")
+
+
+def assert_readable(texts: list[tuple[str, float]], what: str) -> None:
+    assert texts
+    for text, contrast in texts:
+        assert contrast >= LEAST_CONTRAST, f"{what}: {text!r} has a contrast of {contrast:.1f}"
+
+
+_TOPS = """
+return [...document.querySelectorAll("#actions button, #rewards button, #tabs button, #go, #stop")]
+  .filter((e) => e.checkVisibility()).map((e) => Math.round(e.getBoundingClientRect().top));
+"""
+
+
+def test_a_phone_shows_all_actions_and_no_answer_moves_them(a_lesson: Lesson) -> None:
+    phone, long = a_lesson.phone, "RLA 10 taught: back; all near it say curve_right, spin_right, forward (RLA 9 first)"
+    a_lesson.begin(of_robot(actions=ACTIONS), standing=Standing())
+    assert phone.run("const e = document.querySelector('#teach'); return e.scrollHeight - e.clientHeight;") == 0
+    a_lesson.robot.refuses = long
+    before = phone.run(_TOPS)
+    phone.run("document.querySelector('#praise').click()")
+    a_lesson.reads("#said", long)
+    assert phone.run(_TOPS) == before
