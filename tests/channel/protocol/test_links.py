@@ -5,10 +5,9 @@ import itertools
 import os
 import random
 import signal
-import statistics
 import sys
 from collections import Counter
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -118,23 +117,6 @@ class Told:
     """Ticks from the last message to standing wheels."""
     back_s: list[float] = field(default_factory=list)
     """Seconds from the end of a hole to the next state."""
-
-    def line(self) -> str:
-        count = Counter("no answer" if n.answer is None else n.answer.why or "accepted" for n in self.notes)
-        took_ms = [1000 * note.took_s for note in self.notes if note.answer is not None]
-        p99 = statistics.quantiles(took_ms, n=100, method="inclusive")[98]
-        refused = len(self.notes) - count["accepted"] - count["no answer"]
-        return (
-            f"| {self.link.name} | {len(self.notes)} | {count['accepted']} | {refused} | {count['no answer']} "
-            f"| {statistics.median(took_ms):.0f} | {p99:.0f} | {self.stops['hand']} | {self.stops['rlas']} "
-            f"| {10 * max(self.stand_ticks)} | {max(self.back_s):.2f} |"
-        )
-
-
-_HEAD = (
-    "| link | commands | accepted | refused | no answer | answer p50 ms | p99 ms | false stops by hand | of RLAs "
-    "| longest to stand ms | longest to come back s |\n|---|---|---|---|---|---|---|---|---|---|---|"
-)
 
 
 class Story:
@@ -386,16 +368,6 @@ def _must_be_good(told: Told, folder: Path) -> None:
         assert all(note.answer is not None for note in told.notes if isinstance(_command(note.request), Reward))
 
 
-@pytest.fixture(scope="module")
-def report() -> Iterator[list[Told]]:
-    """Written to the file that KURT2RT_LINKS_REPORT names, if any."""
-    tales: list[Told] = []
-    yield tales
-    path = os.environ.get("KURT2RT_LINKS_REPORT")
-    if path and tales:
-        Path(path).write_text("\n".join((_HEAD, *(told.line() for told in tales))) + "\n", encoding="utf-8")
-
-
 @pytest.mark.parametrize("link", _FEW, ids=lambda link: link.name)
 def test_bad_link_lessons_count_once_and_silence_stops(link: BadLink, tmp_path: Path) -> None:
     _must_be_good(_tell(link, tmp_path, SHORT), tmp_path)
@@ -437,7 +409,5 @@ async def test_hung_or_killed_client_leaves_robot_standing(tmp_path: Path) -> No
 
 @pytest.mark.deep
 @pytest.mark.parametrize("link", BAD_LINKS, ids=lambda link: link.name)
-def test_over_forty_bad_links(link: BadLink, tmp_path: Path, report: list[Told]) -> None:
-    told = _tell(link, tmp_path, LONG)
-    report.append(told)
-    _must_be_good(told, tmp_path)
+def test_over_forty_bad_links(link: BadLink, tmp_path: Path) -> None:
+    _must_be_good(_tell(link, tmp_path, LONG), tmp_path)

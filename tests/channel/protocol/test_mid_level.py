@@ -1,24 +1,21 @@
 """A robot with a mid level, as its teachers see it over the wire: lessons, overrides, goals and surprise."""
 
-import math
-
 import pytest
 
 from kurt2rt.channel.protocol.codec import decode_state, encode_state
-from kurt2rt.channel.protocol.requests import LessonsRequest, SituationsRequest
+from kurt2rt.channel.protocol.requests import SituationsRequest
 from kurt2rt.channel.protocol.state import State, SurpriseState
 from kurt2rt.channel.server.reply import ReplyStatus
 from kurt2rt.core.decision.decision import GoalStatus, PlanStep
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.outcome import Outcome, ResultCode
-from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import BeAt, NameSituation, Seek, StopSeeking, Teach, Undo
-from tests.channel.channel_fixture import STAMP, ChannelFixture, outcome_of, why
+from tests.channel.channel_fixture import ChannelFixture, outcome_of, why
 from tests.channel.grounds import Yard
 
 TURNS = ("straight_on", "turn_left", "turn_right")
-NOTHING_YET = ("",) * 12
 
 
 @pytest.fixture
@@ -36,37 +33,6 @@ def picture(desk: ChannelFixture) -> State:
 async def teach(desk: ChannelFixture, way: str, *, alternative: bool = False) -> Outcome | None:
     """Give a lesson of the mid level; return what becomes of it."""
     return outcome_of(await desk.ask(desk.command(Teach, way, None, MID, alternative)))
-
-
-async def test_mid_level_asks_and_follows_the_answer(desk: ChannelFixture) -> None:
-    told = picture(desk)
-    assert (told.cause, told.asks_at, told.question) == ("unknown", MID, ())
-    assert (told.nearest, told.radius, told.distance) == (None, 6.0, math.inf)
-    assert told.mid is not None
-    assert (told.mid.asks, told.mid.rla, told.mid.nearest, told.mid.here, told.mid.there) == (
-        True,
-        None,
-        None,
-        NOTHING_YET,
-        (),
-    )
-    taught = await teach(desk, "turn_left")
-    assert taught == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, level=MID, action="turn_left")
-    desk.run()
-    told = picture(desk)
-    assert (told.asks_at, told.cause, told.behaviour) == (BASIC, "unknown", "turn_left")  # now it cannot turn left
-    mid = told.mid
-    assert mid is not None
-    assert (mid.behaviour, mid.rla, mid.nearest_behaviour, mid.distance, mid.asks) == (
-        "turn_left",
-        1,
-        "turn_left",
-        0.0,
-        False,
-    )
-    assert (mid.taught_by, mid.taught_at, mid.there) == ("ann", STAMP, NOTHING_YET)
-    lessons = (await desk.ask(LessonsRequest(1))).body["lessons"]
-    assert {"mid-level", "RLA", "turn_left"} <= set(lessons[0][1].split())
 
 
 async def test_situations_are_named_listed_sought_and_undone(desk: ChannelFixture) -> None:

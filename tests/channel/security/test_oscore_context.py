@@ -141,16 +141,6 @@ def test_context_of_old_pairing_writes_not_into_renewed(pairing: Pairing, tmp_pa
     assert sequence_of(renewed.teacher) == before
 
 
-def test_two_programs_cannot_use_the_same_side(pairing: Pairing) -> None:
-    first = OscoreContext(pairing.teacher)
-    with pytest.raises(CredentialsError, match="another program"):
-        OscoreContext(pairing.teacher)
-    with pytest.raises(TimeoutError):
-        oscore.FilesystemSecurityContext(str(pairing.teacher))  # aiocoap's own tools are kept out as well
-    first.close()
-    OscoreContext(pairing.teacher).close()
-
-
 def test_a_folder_that_is_not_there_is_told_with_what_to_do(tmp_path: Path) -> None:
     with pytest.raises(CredentialsError, match="kurt2rt pair absent"):
         OscoreContext(tmp_path / "absent")

@@ -9,7 +9,7 @@ from aiocoap import oscore
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.paired_devices import PairingChange, Teachers
-from kurt2rt.channel.security.pairing import local_pairing, pair, renew, revoke
+from kurt2rt.channel.security.pairing import pair, renew, revoke
 from tests.channel.clock import Clock
 from tests.channel.sides import ask_until_fresh, header_of
 
@@ -45,17 +45,6 @@ def house(tmp_path: Path) -> Iterator[House]:
     house = House(tmp_path)
     yield house
     house.close()
-
-
-async def test_pairing_with_critics_name_is_refused_and_reported(house: House) -> None:
-    house.pair("phone")
-    (house.teachers / "phone").rename(house.teachers / "critic")
-    house.pair("tablet")
-    teachers = house.start()
-    await teachers.refresh()
-    assert teachers.names == ("tablet",)
-    (line,) = teachers.trouble
-    assert "kurt2rt pair critic --revoke" in line
 
 
 def test_strangers_find_nothing(house: House) -> None:
@@ -95,18 +84,6 @@ async def test_device_revoked_at_run_time_is_refused(house: House) -> None:
         teachers.find(header)
     with pytest.raises(oscore.ContextUnavailable):  # and it is shown no more pictures
         context.new_sequence_number()
-
-
-async def test_a_renewed_device_is_known_by_its_new_keys_alone(house: House) -> None:
-    house.pair("phone")
-    teachers = house.start()
-    old = header_of(house.device("phone"))
-    renew(house.teachers, house.devices, "phone")
-    assert await teachers.refresh() == PairingChange(added=("phone",), removed=("phone",))
-    with pytest.raises(KeyError):
-        teachers.find(old)
-    device = house.device("phone")
-    assert ask_until_fresh(device, teachers.find(header_of(device)), "forward") == "forward"
 
 
 async def test_channel_damaged_pairing_is_reported_and_others_work(house: House) -> None:
@@ -151,20 +128,6 @@ async def test_teachers_unreadable_disk_keeps_contexts(house: House, monkeypatch
         assert "Input/output error" in teachers.trouble[0]
     await teachers.refresh()
     assert teachers.trouble == ()
-
-
-def test_only_local_with_own_pairings_is_true(house: House) -> None:
-    teachers = house.start()
-    assert teachers.only_local
-    teachers.close()
-    local_pairing(house.teachers, house.devices)
-    local_pairing(house.teachers, house.devices, "auto")
-    teachers = house.start()
-    assert teachers.names == ("auto", "local")
-    assert teachers.only_local
-    teachers.close()
-    house.pair("phone")
-    assert not house.start().only_local
 
 
 def test_a_folder_that_is_none_is_told(tmp_path: Path) -> None:

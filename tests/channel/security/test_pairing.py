@@ -13,7 +13,7 @@ from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.pairing import Device, list_pairings, local_pairing, pair, read_device, renew, revoke
 from kurt2rt.core.rla.rla import AUTO
-from tests.channel.sides import ask, ask_until_fresh
+from tests.channel.sides import ask_until_fresh
 
 
 @pytest.fixture
@@ -33,17 +33,6 @@ def understood(teacher: Path, device: Path) -> bool:
     finally:
         with_device.close()
         with_robot.close()
-
-
-def test_pair_makes_both_sides_that_understand_each_other(teachers: Path, devices: Path) -> None:
-    pairing = pair(teachers, devices, "anna-phone", host="10.0.0.7", port=6000)
-    assert pairing.name == "anna-phone"
-    assert pairing.teacher == teachers / "anna-phone"
-    assert read_device(devices / "anna-phone") == pairing.device
-    assert pairing.device.host == "10.0.0.7"
-    assert pairing.device.port == 6000
-    assert len(pairing.device.token) == 32
-    assert understood(pairing.teacher, pairing.device.folder)
 
 
 def test_pair_secrets_are_readable_by_owner_only(teachers: Path, devices: Path) -> None:
@@ -100,31 +89,6 @@ def test_paired_twice_is_refused_and_changes_nothing(teachers: Path, devices: Pa
     with pytest.raises(CredentialsError, match="kurt2rt pair phone --renew"):
         pair(teachers, devices, "phone")
     assert understood(pairing.teacher, pairing.device.folder)
-
-
-def test_renew_replaces_keys_and_refuses_old_device(teachers: Path, devices: Path, tmp_path: Path) -> None:
-    old = pair(teachers, devices, "phone")
-    kept = old.device.folder.rename(tmp_path / "kept")
-    new = renew(teachers, devices, "phone")
-    assert new.name == "phone"
-    assert new.device.token != old.device.token
-    assert understood(new.teacher, new.device.folder)
-    with OscoreSides(new.teacher, kept) as (robot, device), pytest.raises(ValueError, match="Sender ID"):
-        ask(device, robot, "forward")
-
-
-class OscoreSides:
-    """Robot's and device's context for a block."""
-
-    def __init__(self, teacher: Path, device: Path) -> None:
-        self._contexts = (OscoreContext(teacher), OscoreContext(device))
-
-    def __enter__(self) -> tuple[OscoreContext, OscoreContext]:
-        return self._contexts
-
-    def __exit__(self, *_: object) -> None:
-        for context in self._contexts:
-            context.close()
 
 
 def test_revoke_deletes_both_sides_in_use(teachers: Path, devices: Path) -> None:

@@ -51,13 +51,6 @@ def test_filter_too_many_proven_drops_longest_silent() -> None:
     assert [door.let_in(number, tries=1) for number in (1, 2, 3, 4)] == [1, 0, 1, 1]
 
 
-def test_filter_junk_costs_no_token() -> None:
-    door = Door(Limits(strangers_at_once=1))
-    assert door.let_in(1, tries=1000, data=b"hello robot") == 0
-    assert door.counters == Counters(received=1000, junk=1000)
-    assert door.let_in(1, tries=1) == 1
-
-
 @pytest.mark.parametrize(
     ("data", "passes"),
     [

@@ -1,8 +1,6 @@
 """The robot's UDP port, with real sockets on loopback."""
 
 import asyncio
-import gc
-import random
 import weakref
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
@@ -20,7 +18,6 @@ from tests.channel.clock import Clock
 from tests.channel.jumping_loop import run_jumping
 from tests.patience import PATIENCE_S
 
-UNLIMITED = Limits(strangers_at_once=1e9)
 PING = bytes([0x40, 0, 0x12, 0x34])
 PONG = bytes([0x70, 0, 0x12, 0x34])
 
@@ -155,16 +152,6 @@ async def test_a_request_is_answered(listens: str, asked: str) -> None:
         assert robot.endpoint.counters == Counters(received=1)
 
 
-@pytest.mark.parametrize(("listens", "asked"), [("127.0.0.1", "127.0.0.2"), ("127.0.0.1", "::1"), ("::1", "127.0.0.1")])
-async def test_bound_to_one_address_it_is_not_there_at_others(listens: str, asked: str) -> None:
-    async with robot_at(listens) as robot:
-        sender = await robot.sender(asked)
-        sender.post("echo")
-        async with asyncio.timeout(PATIENCE_S):
-            await sender.refused.wait()
-        assert robot.endpoint.counters.received == 0
-
-
 @pytest.mark.parametrize("second", ["127.0.0.1", "::"])
 async def test_a_second_robot_on_the_port_is_refused(second: str) -> None:
     async with robot_at() as robot:
@@ -186,37 +173,6 @@ async def test_endpoint_unusable_address_raises_one_line(host: str, port: int, w
     assert "\n" not in str(refused.value)
 
 
-def random_bytes(chance: random.Random) -> bytes:
-    return chance.randbytes(chance.randint(1, 100))
-
-
-def random_options(chance: random.Random) -> bytes:
-    """Return a datagram whose first four bytes are those of a request."""
-    return bytes([0x50, aiocoap.POST]) + chance.randbytes(chance.randint(2, 60))
-
-
-def random_reply(chance: random.Random) -> bytes:
-    """Return an ACK or RST to a message that was never sent."""
-    return bytes([chance.choice([0x60, 0x70]), 0]) + chance.randbytes(2)
-
-
-@pytest.mark.parametrize("make", [random_bytes, random_options, random_reply])
-async def test_no_datagram_brings_it_down(make: Callable[[random.Random], bytes]) -> None:
-    chance = random.Random(2004)
-    async with robot_at(limits=UNLIMITED) as robot:
-        sender = await robot.sender()
-        for _ in range(20):
-            for _ in range(50):
-                sender.send(make(chance))
-            await sender.ping()
-        token = sender.post("echo", b"still here")
-        while (answer := await sender.answer()).token != token:
-            pass
-        assert answer.payload == b"still here"
-        assert robot.endpoint.counters.received == 1000 + 20 + 1
-        assert robot.endpoint.newest_failure == ""
-
-
 async def test_endpoint_flood_of_strangers_leaves_teacher_alone() -> None:
     clock = Clock()
     async with robot_at(limits=Limits(strangers_at_once=3, strangers_per_s=1), now=clock) as robot:
@@ -235,36 +191,6 @@ async def test_endpoint_flood_of_strangers_leaves_teacher_alone() -> None:
         other.post("echo", b"patience")
         while (await other.answer()).payload != b"patience":
             pass
-
-
-async def test_of_a_request_without_an_answer_nothing_is_left() -> None:
-    async with robot_at() as robot:
-        sender = await robot.sender()
-        for _ in range(10):
-            sender.post("silence")
-        await sender.ping()
-        sender.post("echo")
-        await sender.answer()
-        gc.collect()
-        assert [request for request in robot.site.requests if request() is not None] == []
-
-
-async def test_endpoint_sender_gone_before_answer_is_ignored() -> None:
-    async with robot_at("::") as robot:
-        for host in ("127.0.0.1", "::1"):
-            robot.site.may_answer.clear()
-            robot.site.asked.clear()
-            gone = await robot.sender(host)
-            gone.post("echo")
-            await robot.site.asked.wait()
-            gone.close()
-            await asyncio.sleep(0)  # the socket closes in the next round of the loop
-            robot.site.may_answer.set()
-            other = await robot.sender(host)
-            other.post("echo", b"me too")
-            assert (await other.answer()).payload == b"me too"
-            await other.ping()
-        assert robot.endpoint.counters.failed == 0
 
 
 async def test_endpoint_library_error_is_counted_and_next_is_read(

@@ -2,18 +2,6 @@
 
 from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.reply import done
-from kurt2rt.core.outcome import Outcome, ResultCode
-
-
-async def test_pending_command_resolves_to_its_reply() -> None:
-    outcomes = PendingCommands()
-    assert outcomes.get("x") is None
-    waiting = outcomes.begin("x")
-    assert outcomes.get("x") is waiting
-    assert not waiting.done()
-    outcomes.settle("x", done(7, Outcome(ResultCode.RESUMED)))
-    assert (await waiting) == done(7, Outcome(ResultCode.RESUMED))
-    assert outcomes.get("x") is waiting
 
 
 async def test_pending_command_is_never_dropped() -> None:

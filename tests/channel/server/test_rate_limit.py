@@ -12,10 +12,3 @@ def test_new_tokens_come_at_its_rate() -> None:
     taken(bucket, tries=100)
     clock.now_s += 0.5
     assert taken(bucket, tries=100) == 5
-
-
-def test_a_long_silence_saves_no_more_than_it_holds() -> None:
-    clock = Clock()
-    bucket = TokenBucket(3, 10, clock)
-    clock.now_s += 1e6
-    assert taken(bucket, tries=100) == 3

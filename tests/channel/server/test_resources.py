@@ -2,9 +2,7 @@
 
 import asyncio
 import logging
-import socket
-from collections.abc import AsyncIterator, Callable, Iterator
-from contextlib import asynccontextmanager
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,21 +20,18 @@ from kurt2rt.channel.protocol.codec import (
     encode_state,
     path_of,
 )
-from kurt2rt.channel.protocol.request_types import Request, tick_request
+from kurt2rt.channel.protocol.request_types import Request
 from kurt2rt.channel.protocol.requests import HelloRequest, LessonsRequest, StopRequest
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.security.pairing import local_pairing, pair
-from kurt2rt.channel.server.channel import Channel, open_channel
+from kurt2rt.channel.server.channel import open_channel
 from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus
 from kurt2rt.channel.server.resources import RobotSite
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.outcome import ResultCode
-from kurt2rt.core.teaching.commands import Teach
-from tests.channel.channel_fixture import ROBOT, ChannelFixture, turns
+from tests.channel.channel_fixture import ChannelFixture, turns
 from tests.channel.sides import answer_challenge, carried, header_of
 from tests.channel.states import state
-from tests.patience import PATIENCE_S
 
 CODES = (aiocoap.GET, aiocoap.POST, aiocoap.PUT, aiocoap.DELETE, aiocoap.FETCH)
 EVERYWHERE = (*PATHS, "/state", "/", "/nothing/here", "/.well-known/core")
@@ -150,19 +145,6 @@ async def test_discovery_names_every_resource(school: School) -> None:
     assert (whole.payload, whole.opt.block2) == (told, None)
 
 
-async def test_a_block_behind_the_end_is_refused(school: School) -> None:
-    request = plain(CORE, aiocoap.GET)
-    request.opt.block2 = (1000, False, 1)
-    (event,) = await answers(school.site, carried(request))
-    assert (event.message.code, event.message.payload) == (aiocoap.BAD_REQUEST, b"")
-
-
-async def test_an_observation_without_keys_is_refused(school: School) -> None:
-    (event,) = await answers(school.site, carried(plain("/state", aiocoap.GET, observe=0)))
-    assert event.message.code == aiocoap.UNAUTHORIZED
-    assert school.site.observers == 0
-
-
 async def test_every_bit_that_is_changed_on_the_way_meets_silence(school: School) -> None:
     keys = school.keys()
     await Phone(school.site, keys).post(HelloRequest())
@@ -239,20 +221,6 @@ async def test_site_internal_error_is_counted_and_next_request_works(
     assert (await phone.post(LessonsRequest(3))).code == aiocoap.CHANGED
 
 
-async def test_site_authentic_request_marks_sender_proven(school: School) -> None:
-    class Doorkeeper:
-        proofs = 0
-
-        def mark_proven(self, remote: Any) -> None:  # noqa: ARG002
-            self.proofs += 1
-
-    school.site.senders = senders = Doorkeeper()
-    await answers(school.site, carried(plain("/hello")))
-    assert senders.proofs == 0
-    await school.phone().post(HelloRequest())
-    assert senders.proofs == 1
-
-
 # Pictures.
 
 
@@ -304,16 +272,6 @@ async def test_observer_slow_gets_newest_state_and_none_older(school: School) ->
     assert school.site.states_skipped == skipped  # also of those who are gone
 
 
-async def test_observer_state_during_send_is_not_lost(school: School) -> None:
-    show(school, 5)
-    observer = Observer(school.phone(), look())
-    assert await observer.ticks() == [5]
-    show(school, 10)
-    asyncio.get_running_loop().call_soon(show, school, 15)
-    assert (await observer.ticks())[-1] == 15
-    await observer.removed()
-
-
 async def test_state_get_before_first_state_waits(school: School) -> None:
     call = asyncio.create_task(school.phone().call(look(observe=None)))
     await turns()
@@ -352,114 +310,6 @@ async def test_observer_silent_for_a_second_gets_confirmable_state(
 
 
 # Over a real socket.
-
-
-class Line:
-    """A device on loopback with aiocoap's own socket."""
-
-    def __init__(self, coap: Any, port: int, keys: OscoreContext) -> None:
-        self._coap = coap
-        self._address = ("127.0.0.1", port)
-        self._host = f"127.0.0.1:{port}"
-        self._keys = keys
-
-    async def plain(self, path: str, code: Any) -> Any:
-        """Return the answer to a request without keys."""
-        return await self._response(plain(path, code))
-
-    async def call(self, request: Request) -> Any:
-        """Return the answer to a request of the wire, after the robot's first challenge."""
-        message = plain(path_of(request), payload=encode_request(request))
-        answer = await self._protected(message)
-        return answer if answer.opt.echo is None else await self._protected(message.copy(echo=answer.opt.echo))
-
-    def forge(self, count: int) -> None:
-        """Send messages with this device's key id that its keys did not make."""
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as forger:
-            for number in range(count):
-                outer, _ = self._keys.protect(plain("/hello"))
-                outer.payload = bytes(len(outer.payload))
-                outer.mid, outer.mtype, outer.token = number, aiocoap.NON, bytes([number])
-                forger.sendto(outer.encode(), self._address)
-
-    async def _protected(self, message: Any) -> Any:
-        outer, request_id = self._keys.protect(message)
-        answer, _ = self._keys.unprotect(await self._response(outer), request_id)
-        return answer
-
-    async def _response(self, message: Any) -> Any:
-        message.unresolved_remote = self._host
-        async with asyncio.timeout(PATIENCE_S):
-            return await self._coap.request(message, handle_blockwise=False).response
-
-
-class OnLine:
-    """A robot that listens on loopback, and a paired device that talks to it."""
-
-    def __init__(self, desk: ChannelFixture, channel: Channel, line: Line) -> None:
-        self.desk = desk
-        self.channel = channel
-        self.line = line
-        desk.channel = channel
-        desk.run()  # before its first tick a robot has no picture on which anything could be said
-
-    async def call(self, request: Request) -> dict[str, Any]:
-        """Return the answer to a request while the robot ticks without pause, for at most 0.4 s of robot time."""
-        task = asyncio.create_task(self.line.call(request))
-        ticks = 0
-        while not (await asyncio.wait([task], timeout=ROBOT.cycle_s))[0]:
-            if ticks < 40:
-                self.desk.run()
-                ticks += 1
-            self.desk.write()
-        answer = await task
-        assert answer.code == aiocoap.CHANGED, answer.payload
-        return decode_answer(answer.payload)
-
-
-@asynccontextmanager
-async def on_line(folder: Path) -> AsyncIterator[OnLine]:
-    pairing = pair(folder / "teachers", folder / "devices", "ann")
-    teachers = Teachers(folder / "teachers")
-    keys = OscoreContext(pairing.device.folder)
-    answer_challenge(keys, teachers.find(header_of(keys)))
-    desk = ChannelFixture()
-    journal = JournalStatus(lambda: desk.unwritten, lambda: None, lambda _: "")
-    coap = await aiocoap.Context.create_client_context(transports=["udp6"])
-    dependencies = ChannelDependencies(journal, desk.shelf, lambda: "", None)
-    async with open_channel(desk.runtime, teachers, 0, dependencies) as channel:
-        yield OnLine(desk, channel, Line(coap, channel.endpoint.port, keys))
-    await coap.shutdown()
-    keys.close()
-    teachers.close()
-
-
-async def test_a_paired_device_teaches_the_robot_over_a_socket(tmp_path: Path) -> None:
-    async with on_line(tmp_path) as robot:
-        hello = await robot.call(HelloRequest())
-        answer = await robot.call(tick_request(Teach, hello["boot"], b"12345678", hello["tick"], action="forward"))
-        assert (answer["code"], answer["fields"]["rla"], answer["row"]) == (ResultCode.RLA_TAUGHT, 1, 1)
-        (lesson,) = (await robot.call(LessonsRequest(20)))["lessons"]
-        assert (lesson[0], lesson[2]) == ("ann-" + b"12345678".hex(), "ann")
-        assert "forward" in lesson[1]
-        stop = await robot.call(StopRequest(b"87654321"))
-        assert stop["code"] == ResultCode.STOPPED
-        assert robot.desk.record.decision.cause is DecisionCause.STOPPED
-        assert robot.channel.failures == 0
-
-
-async def test_a_stranger_at_the_socket_is_told_that_he_is_one(tmp_path: Path) -> None:
-    async with on_line(tmp_path) as robot:
-        assert (await robot.line.plain("/hello", aiocoap.POST)).code == aiocoap.UNAUTHORIZED
-        assert (await robot.line.plain("/state", aiocoap.GET)).code == aiocoap.UNAUTHORIZED
-        assert b"</state>" in (await robot.line.plain(CORE, aiocoap.GET)).payload
-
-
-async def test_channel_with_paired_device_listens_everywhere(tmp_path: Path) -> None:
-    async with on_line(tmp_path) as robot:
-        (tokens,) = robot.channel.endpoint._context.request_interfaces
-        transport = tokens.token_interface.message_interface.transport
-        assert transport.get_extra_info("socket").getsockname()[0] == "::"
 
 
 async def test_channel_without_paired_device_listens_on_loopback(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.rla.rla import ASK, Phase
 from kurt2rt.core.teaching.commands import BeginSession, EndSession, Resume, Reward, SetPhase
-from tests.channel.channel_fixture import ROBOT, STAMP, ChannelFixture
+from tests.channel.channel_fixture import STAMP, ChannelFixture
 from tests.service.health.reports import ILL
 
 
@@ -25,14 +25,6 @@ def picture(desk: ChannelFixture) -> State:
     told = desk.channel._states.build(desk.record)
     assert decode_state(encode_state(told)) == told
     return told
-
-
-def test_way_of_the_wheels_sums_up_all_ticks(desk: ChannelFixture) -> None:
-    assert picture(desk).way_m == (0.0, 0.0)
-    desk.robot.ticks = (30, -10)
-    desk.run(7)
-    metres = ROBOT.geometry.metres_per_tick
-    assert picture(desk).way_m == pytest.approx((210 * metres, -70 * metres))
 
 
 def test_urgent_trouble_of_health_is_state_trouble(desk: ChannelFixture) -> None:

@@ -19,15 +19,6 @@ def add(upload: Upload, offset: int, part: bytes, device: str = "phone") -> Outc
     return None
 
 
-def test_parts_in_order_make_the_file_and_copies_change_nothing() -> None:
-    upload = Upload()
-    assert [upload.add("phone", b"1", at, part) for at, part in ((0, b"ab"), (0, b"ab"), (2, b"c"))] == [2, 2, 3]
-    assert upload.pop("phone", b"1", ABC) == b"abc"
-    with pytest.raises(CommandRefusedError) as refused:
-        upload.pop("phone", b"1", ABC)
-    assert refused.value.outcome == Outcome(RefusalCode.UPLOAD_INCOMPLETE)
-
-
 def test_upload_unfit_part_is_refused_with_code() -> None:
     upload = Upload(most_bytes=4)
     assert add(upload, 2, b"c") == Outcome(RefusalCode.UPLOAD_UNKNOWN)

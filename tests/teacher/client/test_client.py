@@ -5,7 +5,6 @@ import time
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 from typing import Any, cast
 
@@ -24,10 +23,9 @@ from kurt2rt.channel.protocol.requests import (
     WorldRequest,
 )
 from kurt2rt.channel.security.pairing import Pairing, pair, renew
-from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal, unsaved
+from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal
 from kurt2rt.core.decision.goal import PartialGoal
 from kurt2rt.core.outcome import Outcome, RefusalCode
-from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.perception.sensor_words import InfraredLaw
 from kurt2rt.core.rla.rla import MID, Phase
 from kurt2rt.core.teaching.commands import (
@@ -35,7 +33,6 @@ from kurt2rt.core.teaching.commands import (
     Drive,
     Pursue,
     Resume,
-    Reward,
     RunBehaviour,
     Seek,
     SetPhase,
@@ -169,40 +166,6 @@ async def be_in_charge(client: TeacherClient, robot: StandInRobot) -> None:
 # Seeing
 
 
-async def test_it_takes_its_name_from_the_pairing_and_sees_the_robot(
-    client: TeacherClient, robot: StandInRobot
-) -> None:
-    assert client.name == "phone"
-    await seen(client, lambda: client.state == robot.state)
-    assert client.state_age_s < 10.0
-    assert client.link.states_per_s > 0.0
-    assert client.trouble == ""
-    assert client.restarts == 0
-
-
-def test_a_client_that_is_not_open_says_how_to_open_it(pairing: Pairing) -> None:
-    with pytest.raises(RuntimeError, match="async with"):
-        TeacherClient(pairing.device.folder).press(0.1, 0.1)
-
-
-async def test_states_slow_reader_gets_newest_only(client: TeacherClient, robot: StandInRobot) -> None:
-    robot.showing = False
-    states = client.states()
-    first = await anext(states)
-    for _ in range(3):
-        newest = robot.show()
-        await seen(client, lambda: client.state == newest)  # noqa: B023 - called only in this round
-    assert (await anext(states)) == newest
-    assert newest.tick >= first.tick + 15
-
-
-async def test_the_pictures_end_with_the_client(pairing: Pairing, robot: StandInRobot) -> None:
-    async with TeacherClient(pairing.device.folder, port=robot.port) as client:
-        states = client.states()
-        await anext(states)
-    assert [each async for each in states] == []
-
-
 async def test_doubled_and_overtaken_pictures_never_go_back_in_time(pairing: Pairing, robot: StandInRobot) -> None:
     bad = Weather(doubled=0.5, overtaken=0.5, overtaken_s=0.12)
     ticks = []
@@ -249,14 +212,6 @@ async def test_correct_earlier_counts_driven_time_alone(client: TeacherClient, r
 async def test_correct_earlier_beyond_what_is_kept_raises(client: TeacherClient, seconds: float) -> None:
     with pytest.raises(ValueError, match="10 s"):
         await client.correct_earlier("spin_left", seconds)
-
-
-async def test_correct_earlier_before_the_robot_drove_raises(client: TeacherClient, robot: StandInRobot) -> None:
-    robot.showing = False
-    stands = robot.show(boot=b"next", left_m_s=0.0, right_m_s=0.0)
-    await seen(client, lambda: client.state == stands)
-    with pytest.raises(ValueError, match="drive"):
-        await client.correct_earlier("spin_left", 1.0)
 
 
 async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: StandInRobot) -> None:
@@ -309,22 +264,6 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
     assert len({each.command_id for each in heard}) == len(heard)
 
 
-@pytest.mark.parametrize(
-    ("reply", "answer"),
-    [
-        (
-            refusal("held", HELD, 5),
-            Answer(False, "held", text_of(HELD), 5, outcome=HELD),
-        ),
-        (unsaved(NOT_SAVED, 5), Answer(False, "unsaved", "ENOSPC", 5, outcome=NOT_SAVED)),
-        (Reply(ReplyStatus.NOT_HERE), Answer(False, "4.04 Not Found", "", -1)),
-    ],
-)
-async def test_a_refusal_is_an_answer(client: TeacherClient, robot: StandInRobot, reply: Reply, answer: Answer) -> None:
-    robot.mind = always(reply)
-    assert await client.send(Teach, action="forward") == answer
-
-
 async def test_while_answers_are_lost_the_same_command_is_sent_again(pairing: Pairing, robot: StandInRobot) -> None:
     async with (
         LossyLink(robot.port) as link,
@@ -348,29 +287,6 @@ async def test_while_answers_are_lost_the_same_command_is_sent_again(pairing: Pa
         assert set(copies) == {copies[0]}
 
 
-async def test_command_without_answer_raises_and_leaves_nothing(pairing: Pairing, robot: StandInRobot) -> None:
-    clock = Clock()
-    async with (
-        LossyLink(robot.port) as link,
-        TeacherClient(pairing.device.folder, port=link.port, patience_s=0.25, now=clock) as client,
-    ):
-        await be_in_charge(client, robot)
-        tasks_before = len(asyncio.all_tasks())
-        link.cut()
-        lost_before = link.up.lost
-        results = await asyncio.gather(*(client.send(Reward, value=1) for _ in range(100)), return_exceptions=True)
-        assert all(isinstance(each, NoAnswerError) for each in results)
-        assert {each.code for each in results if isinstance(each, NoAnswerError)} == {NoAnswer.NO_REPLY}
-        await link.until(lambda: link.up.lost - lost_before >= 100)
-        clock.ahead_s += 2.0
-        # What is left is the observation, or the one that is being registered in its place.
-        await eventually(lambda: open_exchanges(client) <= 1)
-        await eventually(lambda: len(asyncio.all_tasks()) <= tasks_before)
-        link.mend()
-        be_patient(client)
-        assert (await client.send(Reward, value=1)).accepted
-
-
 async def test_before_the_first_picture_nothing_is_sent(pairing: Pairing) -> None:
     async with (
         stand_in_robot(pairing.teacher.parent, showing=False) as robot,
@@ -385,20 +301,6 @@ async def test_before_the_first_picture_nothing_is_sent(pairing: Pairing) -> Non
 
 
 # Presence
-
-
-async def test_presence_in_charge_is_sent_40_times_a_second(client: TeacherClient, robot: StandInRobot) -> None:
-    await seen(client, lambda: client.state == robot.state)
-    assert robot.heard == []
-    await be_in_charge(client, robot)
-    heard = await robot.hears(Watch, 10)
-    assert all(later.seen_tick >= earlier.seen_tick for earlier, later in pairwise(heard))
-    assert robot.boots[-1] == b"boot"
-    assert client.state is not None
-    assert heard[-1].seen_tick >= client.state.tick - 10
-    await eventually(lambda: client.link.answered == 1.0)
-    assert client.link.rtt_ms is not None
-    assert client.link.rtt_ms > 0.0
 
 
 async def test_presence_is_not_sent_without_charge_or_watching(client: TeacherClient, robot: StandInRobot) -> None:
@@ -420,19 +322,6 @@ async def test_presence_is_not_sent_without_charge_or_watching(client: TeacherCl
     robot.show(teacher="laptop")
     await seen(client, lambda: client.state is not None and client.state.teacher == "laptop")
     await says_nothing()
-
-
-async def test_on_an_old_picture_nothing_is_said(pairing: Pairing, robot: StandInRobot) -> None:
-    clock = Clock()
-    async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
-        await be_in_charge(client, robot)
-        await robot.hears(Watch)
-        robot.showing = False
-        clock.ahead_s += 0.6
-        await client.stop()
-        told = len(robot.all_of(Watch))
-        await client.stop()
-        assert len(robot.all_of(Watch)) == told
 
 
 # Stopping
@@ -593,26 +482,6 @@ async def test_stop_unanswered_is_superseded_by_later_command(pairing: Pairing, 
 
 
 # Driving
-
-
-async def test_a_press_drives_until_it_is_let_go_and_then_stops(client: TeacherClient, robot: StandInRobot) -> None:
-    assert client.press(0.2, 0.2)
-    assert client.pressing
-    await robot.hears(Drive, 3)
-    client.press(0.1, -0.1)
-    await eventually(lambda: robot.all_of(Drive)[-1].left_m_s == 0.1)
-    answer = await client.let_go()
-    assert answer is not None
-    assert answer.accepted
-    assert not client.pressing
-    heard = robot.all_of(Drive)
-    assert (heard[0].left_m_s, heard[0].right_m_s) == (0.2, 0.2)
-    assert (heard[-1].left_m_s, heard[-1].right_m_s) == (0.1, -0.1)
-    assert len({each.press_id for each in heard}) == 1
-    released = robot.heard[-1]
-    assert isinstance(released, StopRequest)
-    assert released.press_id == heard[0].press_id
-    assert await client.let_go() is None
 
 
 async def test_let_go_ends_press_before_its_answer(client: TeacherClient, robot: StandInRobot) -> None:
@@ -859,3 +728,16 @@ async def forger(forge: Callable[[bytes], bytes]) -> AsyncIterator[int]:
     )
     yield transport.get_extra_info("sockname")[1]
     transport.close()
+
+
+async def test_on_an_old_picture_nothing_is_said(pairing: Pairing, robot: StandInRobot) -> None:
+    clock = Clock()
+    async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
+        await be_in_charge(client, robot)
+        await robot.hears(Watch)
+        robot.showing = False
+        clock.ahead_s += 0.6
+        await client.stop()
+        told = len(robot.all_of(Watch))
+        await client.stop()
+        assert len(robot.all_of(Watch)) == told

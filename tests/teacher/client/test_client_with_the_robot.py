@@ -14,7 +14,7 @@ from kurt2rt.channel.security.pairing import Pairing, pair
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase
-from kurt2rt.core.teaching.commands import Correct, Resume, Take, Teach, Undo
+from kurt2rt.core.teaching.commands import Correct, Take, Teach, Undo
 from kurt2rt.knowledge.exchange.package import read_package
 from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.post_tick import ProgramConsole
@@ -161,19 +161,3 @@ async def test_copies_come_over_a_bad_link_whole(tmp_path: Path) -> None:
             assert caught.value.answer.code is RefusalCode.NO_FILE
     given = read_package(tmp_path / "exported" / str(made.extra["name"]))
     assert len(given.lessons) == 1
-
-
-async def test_go_right_after_an_answered_stop_is_taken(tmp_path: Path) -> None:
-    device = paired(tmp_path).device
-    with rig() as live:
-        async with (
-            listening_robot(live, tmp_path) as port,
-            TeacherClient(device.folder, port=port) as robot,
-        ):
-            assert (await robot.send(Take)).accepted
-            for _ in range(10):
-                stop = await robot.stop()
-                go = await robot.send(Resume)
-                # Its readings are old if this machine stalled, and the answer says so.
-                assert (stop.code, go.code) == (ResultCode.STOPPED, ResultCode.RESUMED)
-            await state_where(robot, stopped=None)

@@ -11,7 +11,6 @@ import anyio.to_thread
 import pytest
 
 import kurt2rt.teacher
-from kurt2rt.channel.protocol.codec import WireError
 from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import ONLOOKER, Pairing, pair
@@ -127,14 +126,6 @@ def test_hold_teaches_for_its_time_and_tells_how_many(robot: RobotProcess) -> No
         assert teacher.send(Resume).accepted
 
 
-def test_drive_out_of_range_raises_and_leaves_the_robot(robot: RobotProcess) -> None:
-    with Teacher(robot.device) as teacher:
-        teacher.send(Take)
-        with pytest.raises(WireError, match=r"left_m_s .*-2 .*2"):
-            teacher.drive(9.0, 9.0, seconds=1.0)
-        assert not teacher.state.by_hand
-
-
 async def test_attention_ends_after_the_last_call(pairing: Pairing) -> None:
     async with stand_in_robot(pairing.teacher.parent) as robot:
         robot.show(teacher="phone")
@@ -179,17 +170,6 @@ def test_a_robot_that_cannot_start_says_why(monkeypatch: pytest.MonkeyPatch) -> 
         robot.start()
     with pytest.raises(RuntimeError):
         robot.device.exists()
-
-
-def test_a_robot_ends_with_the_program_that_started_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    fork_robots(monkeypatch)
-    with RobotProcess(tmp_path) as robot:
-        process = robot._process
-        assert process is not None
-        assert process.stdin is not None
-        process.stdin.close()  # as the kernel does when that program is gone
-        assert process.wait(30.0) == 0
-        assert "stands" in robot.log.read_text(encoding="utf-8")
 
 
 def test_the_package_names_what_it_has() -> None:

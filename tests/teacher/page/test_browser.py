@@ -153,16 +153,6 @@ def test_a_page_whose_scripts_stand_still_lets_go_of_the_robot(a_phone: Phone, r
     phone.finger_up()
 
 
-def test_a_page_that_is_left_lets_go_of_the_robot(a_phone: Phone, room: Classroom) -> None:
-    phone = a_phone
-    begin(phone, room)
-    hold_stick(phone)
-    phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
-    phone.open("about:blank")
-    phone.wait(lambda: not room.state().by_hand and room.state().left_m_s == 0, "the robot stands")
-    phone.finger_up()
-
-
 def stand(phone: Phone, room: Classroom) -> None:
     """Stop the robot, and let it drive again: whatever a key does after it is seen."""
     phone.touch("#stop")
@@ -273,3 +263,13 @@ def test_a_hand_puts_the_robot_elsewhere_in_the_simulated_world(a_phone: Phone, 
     phone.finger_up()
     phone.wait(lambda: (place := room.state().place) is not None and abs(place.x_m - 1.0) < 0.1, "it stands there")
     phone.touch("#view")
+
+
+def test_a_page_that_is_left_lets_go_of_the_robot(a_phone: Phone, room: Classroom) -> None:
+    phone = a_phone
+    begin(phone, room)
+    hold_stick(phone)
+    phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
+    phone.open("about:blank")
+    phone.wait(lambda: not room.state().by_hand and room.state().left_m_s == 0, "the robot stands")
+    phone.finger_up()

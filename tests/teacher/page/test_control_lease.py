@@ -1,16 +1,6 @@
 from kurt2rt.teacher.page.control_lease import ControlLease, OperatorPresence
 
 
-def test_connect_after_a_silent_holder_takes_the_lease() -> None:
-    lease = ControlLease(silent_s=1.0)
-    lease.connect(1, now_s=0.0)
-    lease.renew(1, now_s=5.0)
-    lease.connect(2, now_s=5.9)
-    assert lease.holder == 1
-    lease.connect(3, now_s=6.1)
-    assert lease.holder == 3
-
-
 def test_connect_after_a_hidden_holder_takes_the_lease() -> None:
     lease = ControlLease()
     lease.connect(1, now_s=0.0)
@@ -40,14 +30,3 @@ def test_renew_holds_for_the_lease() -> None:
     presence.renew(0.05, now_s=0.0)
     assert presence.is_present(now_s=0.29)
     assert not presence.is_present(now_s=0.3)
-
-
-def test_renew_on_an_old_state_holds_for_less() -> None:
-    presence = OperatorPresence(max_state_age_s=0.5)
-    presence.renew(0.5, now_s=0.0)
-    assert not presence.is_present(now_s=0.0)
-    presence.renew(0.4, now_s=0.0)
-    assert presence.is_present(now_s=0.09)
-    assert not presence.is_present(now_s=0.11)
-    presence.renew(float("inf"), now_s=1.0)
-    assert not presence.is_present(now_s=1.0)

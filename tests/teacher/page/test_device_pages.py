@@ -18,10 +18,9 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import LOCAL, TERMINAL, Device, local_pairing, pair, renew, revoke
-from kurt2rt.teacher.page.device_pages import DevicePages, PageSite, is_within_this_machine
+from kurt2rt.teacher.page.device_pages import DevicePages, PageSite
 from kurt2rt.teacher.page.device_server import Pairings, local_devices, run_device_pages
 from kurt2rt.teacher.page.served_pages import ServedPages
-from kurt2rt.teacher.page.server import listen
 from tests.patience import PATIENCE_S
 from tests.teacher.page.fake_robot import FakeRobot
 
@@ -209,18 +208,6 @@ async def test_pairing_that_another_program_uses_is_said(tmp_path: Path) -> None
         await come_in(pages.link(LOCAL))
 
 
-async def test_under_a_foreign_name_nothing_is_served(tmp_path: Path) -> None:
-    async with server(tmp_path) as pages:
-        local = await come_in(pages.link(LOCAL))
-        for headers in ({}, local):
-            evil = {**headers, "Host": f"evil.example:{pages.port}"}
-            assert (await get(f"127.0.0.1:{pages.port}", "/", evil))[0] == 421
-        foreign = {**local, "Origin": "http://evil.example"}
-        with pytest.raises(InvalidStatus):
-            async with connect(f"ws://127.0.0.1:{pages.port}/robot", additional_headers=foreign, proxy=None):
-                pass
-
-
 async def test_page_that_nobody_shows_for_long_lets_go_of_its_pairing(tmp_path: Path) -> None:
     links = Links()
     device = local_pairing(tmp_path / "teachers", tmp_path / "devices").device
@@ -249,26 +236,6 @@ async def test_page_that_nobody_shows_for_long_lets_go_of_its_pairing(tmp_path: 
             assert links.opened == [LOCAL] * times
             await links.closed()
         await pages.end()
-
-
-@pytest.mark.parametrize(
-    ("server_at", "client_at", "within"),
-    [
-        ("127.0.0.1", "127.0.0.1", True),
-        ("::1", "::1", True),
-        ("::ffff:127.0.0.1", "::ffff:127.0.0.1", True),
-        ("192.168.0.7", "192.168.0.7", False),
-        ("::ffff:192.168.0.7", "::ffff:192.168.0.9", False),
-        ("127.0.0.1", "192.168.0.9", False),
-        ("fe80::1%eth0", "fe80::2%eth0", False),
-    ],
-)
-def test_only_a_connection_over_loopback_is_within_this_machine(
-    server_at: str, client_at: str, *, within: bool
-) -> None:
-    scope = {"server": (server_at, 8642), "client": (client_at, 50000)}
-    assert is_within_this_machine(scope) is within
-    assert is_within_this_machine({}) is False
 
 
 async def test_this_machines_own_page_is_not_served_to_the_network(tmp_path: Path) -> None:
@@ -311,10 +278,3 @@ def test_local_devices_lists_own_then_newest_present_ones(tmp_path: Path) -> Non
     found, trouble = local_devices(pairings)
     assert [each.name for each in found] == [LOCAL, "phone", "old-phone"]
     assert "kurt2rt pair broken --renew" in trouble
-
-
-def test_a_port_in_use_is_passed_over_where_that_is_allowed() -> None:
-    with listen(0, everywhere=False) as taken:
-        port = taken.getsockname()[1]
-        with listen(port, everywhere=True, spare_ports=9) as other:
-            assert port < other.getsockname()[1] <= port + 9

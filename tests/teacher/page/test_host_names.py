@@ -60,7 +60,3 @@ def test_own_names_have_the_domains_of_routers(domain: str, monkeypatch: pytest.
     monkeypatch.setattr("socket.gethostname", lambda: "Robot-Desk.office.example")
     assert is_own_host(f"robot-desk{domain}:8642", "192.168.1.7", own_names())
     assert not is_own_host(f"evil{domain}", "192.168.1.7", own_names())
-
-
-def test_is_own_host_address_that_was_named_is_own() -> None:
-    assert is_own_host("10.0.0.7:8642", "172.17.0.2", {"10.0.0.7"})

@@ -17,15 +17,6 @@ def visible() -> PageConnection:
     return connection
 
 
-def test_pop_hidden_page_gets_messages_and_no_states() -> None:
-    connection = PageConnection(1)
-    connection.set_state(b"boot", {"kind": "state", "tick": 1})
-    connection.send({"kind": "hello"})
-    assert [each["kind"] for each in sent_by(connection)] == ["hello"]
-    connection.visible = True
-    assert [each["kind"] for each in sent_by(connection)] == ["state"]
-
-
 def test_pop_slow_page_gets_the_newest_state_next() -> None:
     connection = visible()
     sent: list[dict[str, Any]] = []

@@ -22,10 +22,3 @@ def test_age_s_unknown_or_forgotten_state_is_infinite() -> None:
     assert states.get(first) is None
     for number in (None, 0, first, 4):
         assert states.age_s(number, now_s=0.0) == math.inf
-
-
-def test_acknowledge_of_an_unsent_state_is_ignored() -> None:
-    states = SentStates(window=1)
-    states.acknowledge(100)
-    states.add(b"boot", 1, now_s=0.0)
-    assert not states.may_send

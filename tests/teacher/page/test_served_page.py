@@ -164,22 +164,6 @@ async def test_websocket_of_another_origin_is_refused() -> None:
                 pass
 
 
-async def test_manifest_is_served_as_one_and_its_icons_are_there() -> None:
-    async with served() as page:
-        got = await page.get("/manifest.webmanifest", page.cookie)
-        assert (got.status, got.headers["content-type"]) == (200, "application/manifest+json")
-        manifest = json.loads(got.body)
-        assert (manifest["start_url"], manifest["display"]) == ("/", "standalone")
-        for icon in manifest["icons"]:
-            got = await page.get(f"/{icon['src']}", page.cookie)
-            assert (got.status, got.headers["content-type"]) == (200, icon["type"])
-        # A browser brings the cookie for a manifest only if it is told to.
-        assert (
-            'rel="manifest" href="manifest.webmanifest" crossorigin="use-credentials"'
-            in (STATIC / "index.html").read_text()
-        )
-
-
 async def test_the_page_runs_no_foreign_script_and_is_in_no_frame() -> None:
     async with served() as page:
         got = await page.get("/", page.cookie)
@@ -207,23 +191,6 @@ async def test_pictures_come_over_the_websocket_and_orders_go_back() -> None:
         await socket.send(json.dumps(order))
         answer = await hear(socket, "answer")
         assert (answer["number"], answer["accepted"]) == (7, True)
-
-
-async def test_invalid_message_closes_the_websocket() -> None:
-    async with served() as page, page.websocket() as socket:
-        await socket.send('{"kind": "drive"}')
-        await socket.wait_closed()
-        assert socket.close_code == 1008
-
-
-async def test_a_page_that_is_gone_lets_go_of_the_robot() -> None:
-    async with served() as page:
-        async with page.websocket() as socket:
-            number = await see(page, socket)
-            press = {"kind": "press", "press_id": 1, "left_m_s": 0.2, "right_m_s": 0.2, "picture": number}
-            await socket.send(json.dumps(press))
-            await page.robot.is_told("press")
-        await page.robot.is_told("let_go")
 
 
 async def test_the_end_of_the_server_lets_go_of_the_robot_first() -> None:
@@ -257,27 +224,6 @@ def test_a_request_that_never_comes_whole_is_not_waited_for(said: bytes) -> None
             with anyio.fail_after(4.0), contextlib.suppress(anyio.EndOfStream, anyio.BrokenResourceError):
                 while True:
                     await connection.receive()
-
-    run_jumping(story)
-
-
-def test_half_a_request_does_not_buy_more_time() -> None:
-    async def story() -> None:
-        async with served(request_within_s=3.0) as page, await anyio.connect_tcp("127.0.0.1", page.port) as connection:
-            with anyio.fail_after(4.0), contextlib.suppress(anyio.BrokenResourceError):
-                while True:
-                    await connection.send(b"X")
-                    await anyio.sleep(0.2)
-
-    run_jumping(story)
-
-
-def test_a_page_stays_for_longer_than_a_request_may_take() -> None:
-    async def story() -> None:
-        async with served(request_within_s=3.0) as page, page.websocket() as socket:
-            await hear(socket, "page")
-            await anyio.sleep(9.0)
-            await see(page, socket)
 
     run_jumping(story)
 

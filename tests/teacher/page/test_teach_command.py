@@ -94,16 +94,3 @@ def test_a_second_page_takes_the_next_port_and_says_so(tmp_path: Path) -> None:
             page.process.wait(timeout=PATIENCE_S)
             assert page.process.stderr is not None
             assert os.strerror(errno.EADDRINUSE) in page.process.stderr.read()
-
-
-def test_all_devices_are_served_by_one_command(tmp_path: Path) -> None:
-    with running("teach", "--phone", "--page-port", "0", "--port", "9", *HERE, folder=tmp_path) as page:
-        local = page.wait_for("http://127.0.0.1:").strip()
-        page.wait_for("for a phone: kurt2rt pair phone")
-        pair(tmp_path / "var" / "teachers", tmp_path / "var" / "devices", "phone")
-        page.wait_for("page for phone:")
-        phone = urlsplit(page.wait_for("/pair?token=").strip())
-        assert phone.port == urlsplit(local).port
-        cookie_of(local)
-        cookie_of(phone._replace(netloc=f"127.0.0.2:{phone.port}").geturl())  # beyond what is 127.0.0.1 alone
-        assert page.end(signal.SIGTERM).err == ""

@@ -61,18 +61,6 @@ async def test_states_become_scan_odometry_and_transform(desk: RobotInRos) -> No
 
 
 @in_ros
-async def test_twists_of_a_device_that_does_not_teach_are_refused(desk: RobotInRos) -> None:
-    await desk.drive(0.2, 0.0, 1.2)
-    assert desk.moved_after(0) == 0
-    level, message = (await desk.statuses())["cmd_vel"]
-    assert (level, "call the service take" in message) == (OK, False)  # they have ceased
-    async with anyio.create_task_group() as tasks:
-        tasks.start_soon(desk.drive, 0.2, 0.0, 2.0)
-        level, message = (await desk.statuses())["cmd_vel"]
-    assert (level, "call the service take" in message) == (WARN, True)
-
-
-@in_ros
 async def test_twists_drive_the_teachers_robot_until_they_cease(desk: RobotInRos) -> None:
     assert await desk.call("take") == (True, "local teaches")
     await desk.drive(0.2, 0.5, 1.0)
@@ -184,28 +172,6 @@ async def test_taught_robot_drives_only_while_a_node_watches(desk: RobotInRos) -
 
 
 @in_ros
-async def test_correction_replaces_the_action_and_undo_restores_it(desk: RobotInRos) -> None:
-    await desk.call("take")
-    await desk.call("teach/forward")
-    assert (await desk.call("correct/spin_left"))[0]
-    assert [each.action for each in desk.at_work.runtime.level.system.rlas] == ["spin_left"]
-    assert (await desk.call("undo"))[0]
-    assert [each.action for each in desk.at_work.runtime.level.system.rlas] == ["forward"]
-
-
-@in_ros
-async def test_lost_topics_stop_robot_that_drives_by_hand(desk: RobotInRos) -> None:
-    await desk.call("take")
-    async with anyio.create_task_group() as tasks:
-        tasks.start_soon(desk.drive, 0.2, 0.0, 3.0)
-        await anyio.sleep(0.5)
-        assert desk.at_work.records[-1].guard_result.wheel_speeds != STANDSTILL
-        desk.topics.connected = False
-        lost = desk.at_work.tick
-    assert 0 < desk.moved_after(lost) <= STOPS_WITHIN
-
-
-@in_ros
 async def test_too_many_requests_are_refused_but_a_stop_is_not(desk: RobotInRos) -> None:
     await desk.call("take")
     waiting = [desk.services.begin("undo") for _ in range(MOST_REQUESTS + 3)]
@@ -243,3 +209,15 @@ async def test_request_without_a_robot_is_answered_with_no(desk: RobotInRos) -> 
     assert not success
     assert "the stop is not answered" in text
     assert (await desk.statuses())["teacher's channel"][0] == ERROR
+
+
+@in_ros
+async def test_lost_topics_stop_robot_that_drives_by_hand(desk: RobotInRos) -> None:
+    await desk.call("take")
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(desk.drive, 0.2, 0.0, 3.0)
+        await anyio.sleep(0.5)
+        assert desk.at_work.records[-1].guard_result.wheel_speeds != STANDSTILL
+        desk.topics.connected = False
+        lost = desk.at_work.tick
+    assert 0 < desk.moved_after(lost) <= STOPS_WITHIN

@@ -1,7 +1,6 @@
 """A ROS device over real zenoh on loopback, in real time, with a node of another session and foreign programs."""
 
 import asyncio
-import sys
 from contextlib import closing
 from pathlib import Path
 
@@ -21,15 +20,6 @@ from tests.ros import foreign
 from tests.ros.helpers import free_locator
 from tests.teacher.ros.robot_in_ros import twist
 
-BIN = Path(sys.executable).parent
-FOREIGN_CALL = """
-import sys
-from zenoh_ros2_sdk import ROS2ServiceClient
-definitions = "uint8 structure_needs_at_least_one_member", "bool success\\nstring message"
-client = ROS2ServiceClient("/kurt2/take", "std_srvs/srv/Trigger", *definitions, router_port=int(sys.argv[1]))
-response = client.call(structure_needs_at_least_one_member=0)
-print(response.success, response.message)
-"""
 """Another implementation of rmw_zenoh's names, hashes and attachments, which computes the type's hash itself."""
 
 
@@ -69,31 +59,3 @@ async def test_node_takes_teaches_and_drives_over_zenoh(naming: Naming, tmp_path
                     driving.cancel_scope.cancel()
                 await at_work.until(lambda: at_work.records[-1].guard_result.wheel_speeds == STANDSTILL)
             tasks.cancel_scope.cancel()
-
-
-async def test_topics_and_services_are_listed_by_a_foreign_ros_tool(tmp_path: Path) -> None:
-    settings, locator = RosSettings(naming=Naming.RMW_ZENOH, namespace="kurt2"), free_locator()
-    tool = [str(BIN / "zenoh-ros2"), "--no-daemon", "--router", locator.removeprefix("tcp/"), "--timeout", "5"]
-
-    async def says(*words: str) -> list[str]:
-        return (await anyio.run_process([*tool, *words])).stdout.decode().splitlines()
-
-    async with robot_at_work(tmp_path) as at_work, anyio.create_task_group() as tasks:
-        with closing(ZenohSession(settings, listen=[locator])) as session:
-            async with TeacherClient(at_work.pairing.device.folder, port=at_work.port) as client:
-                met = anyio.Event()
-                tasks.start_soon(RosDevice(client, session, lambda _: met.set()).run)
-                await met.wait()
-                topics = await says("topic", "list")
-                services = await says("service", "list")
-                assert await says("service", "type", "/kurt2/teach/forward") == ["std_srvs/srv/Trigger"]
-                port = locator.rpartition(":")[2]
-                called = await anyio.run_process(
-                    [sys.executable, "-c", FOREIGN_CALL, port], env={"HOME": str(tmp_path)}
-                )
-                assert called.stdout.decode() == "True local teaches\n"
-            tasks.cancel_scope.cancel()
-    assert {each for each in topics if not each.endswith(("cmd_vel", "watch"))} == {
-        *("/diagnostics", "/kurt2/odom", "/kurt2/question", "/kurt2/scan", "/tf")
-    }
-    assert {f"/kurt2/{each}" for each in ("take", "release", "stop", "resume", "undo", "correct/back")} < {*services}

@@ -5,19 +5,15 @@ from typing import Any
 
 import pytest
 
-from hal.odometry import PlanePose
 from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.hello import Hello, hello_of
 from kurt2rt.channel.server.channel import describe_robot
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.ros import messages as ros
-from kurt2rt.teacher.ros.odometer import Odometer, WheelPose
+from kurt2rt.teacher.ros.odometer import Odometer
 from kurt2rt.teacher.ros.robot_messages import (
-    RAYS,
     ScanBuilder,
-    odometry,
     robot_status,
-    transform,
 )
 from tests.channel.channel_fixture import BOOT, ChannelFixture
 from tests.channel.states import state
@@ -53,31 +49,6 @@ def test_scan_has_each_hit_where_the_sensor_sees_it(hello: Hello) -> None:
         found = scan.ranges[ray] * math.cos(angle_rad), scan.ranges[ray] * math.sin(angle_rad)
         assert found == pytest.approx((x_m, y_m), abs=0.012), sensor.name
         assert scan.ranges[ray] < scan.range_max
-
-
-def test_scan_of_free_space_is_infinite_where_a_sensor_looks(hello: Hello) -> None:
-    scan = read_by_another(foreign.LaserScan, ScanBuilder(hello).build(counts(), STAMP))
-    assert len(scan.ranges) == RAYS
-    assert scan.angle_max - scan.angle_min == pytest.approx((RAYS - 1) * scan.angle_increment)
-    seen = [each for each in scan.ranges if not math.isnan(each)]
-    assert 0 < len(seen) <= len(INFRARED.sensors)
-    assert set(seen) == {math.inf}
-    assert (scan.header.frame_id, scan.header.stamp.sec, scan.header.stamp.nanosec) == ("base_link", 12, 500_000_000)
-
-
-def test_odometry_and_transform_tell_the_same_pose() -> None:
-    place = WheelPose(PlanePose(1.0, -2.0, math.pi / 2), 0.3, -0.5)
-    told = read_by_another(foreign.Odometry, odometry(place, STAMP))
-    (moved,) = read_by_another(foreign.TFMessage, transform(place.pose, STAMP)).transforms
-    assert (told.header.frame_id, told.child_frame_id) == (moved.header.frame_id, moved.child_frame_id)
-    assert (told.pose.pose.position.x, told.pose.pose.position.y) == (1.0, -2.0)
-    assert (moved.transform.translation.x, moved.transform.translation.y) == (1.0, -2.0)
-    assert told.pose.pose.orientation == moved.transform.rotation
-    assert 2 * math.atan2(moved.transform.rotation.z, moved.transform.rotation.w) == pytest.approx(math.pi / 2)
-    assert (told.twist.twist.linear.x, told.twist.twist.angular.z) == (0.3, -0.5)
-    diagonal = list(told.pose.covariance)[::7]
-    assert diagonal[2:5] == [1e6] * 3
-    assert all(each > 0 for each in diagonal)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
-from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour, Teach
+from kurt2rt.core.teaching.commands import Command, Resume, Reward, RunBehaviour, Teach
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.appraiser import (
     FeedbackTiming,
@@ -87,20 +87,6 @@ def test_reward_comes_a_reaction_later_for_the_judged_tick() -> None:
     assert person.may_be_refused(reward.command_id)
 
 
-def test_judge_reward_with_patience_ignores_short_bad_periods() -> None:
-    person = appraiser(Phase.REINFORCEMENT, JudgeReward(LeftIsTheVerdict(), patience=5))
-    verdicts = [BAD] * 4 + [NEUTRAL] + [BAD] * 5 + [NEUTRAL] * 10
-    commands = given(person, [record(tick, verdict) for tick, verdict in enumerate(verdicts, start=1)])
-    assert signals(commands) == [(20, -1, 10)]
-
-
-def test_punishments_at_the_limit_end_and_rewards_go_on() -> None:
-    person = appraiser(Phase.REINFORCEMENT, timing=replace(TIMING, max_punishments=2))
-    bad = [record(tick, BAD) for tick in range(1, 101)]
-    good = [record(tick, GOOD) for tick in range(101, 120)]
-    assert [value for _, value, _ in signals(given(person, [*bad, *good]))] == [-1, -1, 1]
-
-
 def test_press_that_a_person_has_not_left_is_no_punishment() -> None:
     answering = build_teacher(TASK, ROBOT, ("forward",), seed=1, session="s")
     person = appraiser(Phase.REINFORCEMENT, timing=replace(TIMING, max_punishments=20), answering=answering)
@@ -115,17 +101,6 @@ def test_phase_3_answers_and_does_not_correct() -> None:
     commands = given(person, [record(tick, NEUTRAL, DecisionCause.UNKNOWN) for tick in range(1, 101)])
     assert [(tick, type(command)) for tick, command in commands] == [(100, Teach)]
     assert given(person, [record(tick, NEUTRAL) for tick in range(101, 400)]) == []
-
-
-def test_phase_4_appraises_all_values_of_each_driver() -> None:
-    person = appraiser(Phase.CRITIC)
-    seen = [
-        *(record(tick, NEUTRAL) for tick in range(1, 31)),
-        *(record(tick, GOOD, DecisionCause.TEACHER) for tick in range(31, 61)),
-        *(record(tick, BAD, DecisionCause.UNKNOWN) for tick in range(61, 91)),  # it stands, and nothing is done
-    ]
-    appraised = [(each.appraisal, each.decision_tick) for _, each in given(person, seen) if isinstance(each, Appraise)]
-    assert appraised == [("neutral", 1), ("good", 31)]
 
 
 def test_demonstrate_runs_an_action_then_resumes() -> None:

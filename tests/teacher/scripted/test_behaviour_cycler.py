@@ -31,12 +31,3 @@ def test_update_lost_command_is_repeated_each_second() -> None:
     told = [tick for tick in range(EACH + 31) if cycler.update(at(tick, "straight_on"), stopped=False)]
     assert told == [EACH, EACH + 10, EACH + 20, EACH + 30]
     assert not cycler.update(at(EACH + 41, "turn_left"), stopped=False)
-
-
-def test_update_stopped_robot_gets_no_command_and_loses_no_time() -> None:
-    cycler = BehaviourCycler(TURNS, PERIOD_S)
-    cycler.update(at(0, "straight_on"), stopped=False)
-    assert not any(cycler.update(at(tick, "straight_on"), stopped=True) for tick in range(1, 2 * EACH))
-    assert cycler.selected == "straight_on"
-    told = [tick for tick in range(2 * EACH, 4 * EACH, 5) if cycler.update(at(tick, "straight_on"), stopped=False)]
-    assert told[0] == 3 * EACH

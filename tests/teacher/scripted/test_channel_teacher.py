@@ -11,7 +11,6 @@ from kurt2rt.channel.protocol.requests import HelloRequest, PlaceRequest, StopRe
 from kurt2rt.channel.security.pairing import local_pairing
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.standing import stop_text
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.rla import AUTO, Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
@@ -23,16 +22,13 @@ from kurt2rt.core.teaching.commands import (
     HoldAction,
     Pursue,
     Resume,
-    SetLessonSpeed,
     SetPhase,
     Take,
 )
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import RefusedError
-from kurt2rt.teacher.scripted.basic_teacher import TeacherView
-from kurt2rt.teacher.scripted.channel_teacher import teach_by_script, view_of_state
+from kurt2rt.teacher.scripted.channel_teacher import teach_by_script
 from simbridge.contracts.simulation import SimulatedPlace
-from tests.channel.states import state
 from tests.patience import PATIENCE_S
 from tests.teacher.client.test_client import HELLO
 from tests.teacher.stand_in_robot import Message, StandInRobot, in_a_task_of_its_own, stand_in_robot
@@ -267,28 +263,6 @@ async def test_teach_by_script_phase_5_guard_stop_is_resumed(robot: StandInRobot
             tasks.cancel_scope.cancel()
 
 
-async def test_teach_by_script_refused_phase_5_leaves_the_robot_there(
-    robot: StandInRobot, client: TeacherClient
-) -> None:
-    mind = streets(robot, 0.5, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
-    mind.refuses_phase = Phase.AUTONOMOUS
-    said: list[str] = []
-    with anyio.fail_after(PATIENCE_S):
-        async with anyio.create_task_group() as tasks:
-            tasks.start_soon(teach_by_script, client, SETTINGS, short("streets", 1.0), said.append)
-            await robot.hears(SetPhase, 2)  # phase 1, and 5 at the end
-            stays = robot.state.tick
-            async for picture in client.states():
-                if picture.tick > stays + 80:  # 40 s later
-                    break
-            robot.show(teacher="anna")
-    assert STAYS in said[-1]
-    assert robot.all_of(PlaceRequest) == []
-    assert robot.all_of(Pursue) == []
-    assert robot.state.stopped is not None
-    assert robot.state.stopped.reason is StopReason.SESSION_OVER
-
-
 async def test_teach_by_script_holding_teacher_holds_and_lets_go(robot: StandInRobot, client: TeacherClient) -> None:
     robot.mind = Mind(robot)
     holding = QUICK_TEACHER.model_copy(update={"corrects_by": "hold", "hold_s": 0.2})
@@ -323,24 +297,6 @@ async def test_teach_by_script_rewinding_teacher_stops_and_resumes(robot: StandI
     assert correction.decision_tick == wrong.tick
 
 
-async def test_teach_by_script_rewind_does_not_lift_a_person_s_stop(robot: StandInRobot, client: TeacherClient) -> None:
-    robot.mind = Mind(robot)
-    task = taught_by(short(corrections_s=4.0), QUICK_TEACHER.model_copy(update={"corrects_by": "rewind"}))
-    with anyio.fail_after(PATIENCE_S):
-        async with anyio.create_task_group() as tasks:
-            tasks.start_soon(teach_by_script, client, SETTINGS, task, lambda _: None)
-            await robot.hears(SetPhase, 2)
-            robot.show(cause="rla", action="back", rla=1)
-            await robot.hears(StopRequest)
-            robot.show(cause="stopped", action=None, rla=None, stopped=ActiveStop(StopReason.SAID_STOP, "anna"))
-            await robot.hears(Correct)
-            for _ in range(30):
-                robot.show()
-                await anyio.sleep(0.02)
-            tasks.cancel_scope.cancel()
-    assert robot.all_of(Resume) == []
-
-
 async def test_teach_by_script_real_robot_is_refused(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = Mind(robot, simulated=False)
     with pytest.raises(RefusedError, match="kurt2-indoor"):
@@ -366,56 +322,9 @@ async def test_teach_by_script_robot_of_another_task_is_refused(
     assert {type(each) for each in robot.orders()} == {HelloRequest}
 
 
-async def test_teach_by_script_repositioning_task_gives_a_notice(client: TeacherClient, robot: StandInRobot) -> None:
-    robot.mind = Mind(robot)
-    task = short()
-    moved = task.model_copy(update={"teaching": task.teaching.model_copy(update={"reposition_every_s": 7.0})})
-    said = await lesson(client, robot, ALONE, moved)
-    assert "7 s" in said[0]
-
-
-@pytest.mark.parametrize(("share", "percents"), [(1.0, []), (0.6, [60])])
-async def test_teach_by_script_slow_teacher_sets_the_lesson_speed(
-    client: TeacherClient, robot: StandInRobot, share: float, percents: list[int]
-) -> None:
-    robot.mind = Mind(robot)
-    profile = QUICK_TEACHER.model_copy(update={"lesson_speeds": {"wall_following": share}})
-    await lesson(client, robot, ALONE, taught_by(short(), profile))
-    orders = robot.orders()
-    speeds = [n for n, order in enumerate(orders) if isinstance(order, SetLessonSpeed)]
-    assert [getattr(orders[n], "percent") for n in speeds] == percents  # noqa: B009
-    phase_2 = next(n for n, o in enumerate(orders) if isinstance(o, SetPhase) and o.phase is Phase.CORRECTIONS)
-    assert all(n < phase_2 for n in speeds)
-
-
-async def test_teach_by_script_lost_answers_are_asked_again(
-    impatient_client: TeacherClient, robot: StandInRobot
-) -> None:
-    robot.mind = Mind(robot, mute=1)
-    said = await lesson(impatient_client, robot, ALONE)
-    assert ALONE in said[-1]
-    assert robot.state.session is None
-    assert len(robot.all_of(BeginSession)) + len(robot.all_of(EndSession)) >= 3
-
-
-async def test_teach_by_script_stop_during_phase_2_keeps_it_there(client: TeacherClient, robot: StandInRobot) -> None:
-    robot.mind = mind = Mind(robot)
-    mind.stop_at_phase = Phase.CORRECTIONS
-    said = await lesson(client, robot, STAYS)
-    assert said[-1].startswith(stop_text(ActiveStop(StopReason.SAID_STOP, "anna")))
-    assert phases(robot) == [Phase.SUPERVISED, Phase.CORRECTIONS]
-    assert robot.all_of(Resume) == []
-
-
 async def test_teach_by_script_stop_at_phase_5_keeps_it_there(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = mind = Mind(robot)
     mind.stop_at_phase = Phase.AUTONOMOUS
     said = await lesson(client, robot, STAYS)
     assert STAYS in said[-1]
     assert robot.state.stopped == ActiveStop(StopReason.SAID_STOP, "anna")
-
-
-def test_view_of_state_has_action_and_behaviour() -> None:
-    seen = view_of_state(state(cause="rla", action="forward", rla=3, behaviour="turn_left"))
-    assert seen == TeacherView(False, True, "forward", state().infrared_counts, "turn_left", tick=1234)
-    assert view_of_state(state(cause="rla", bumpers=0b01)).touching

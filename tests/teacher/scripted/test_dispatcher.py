@@ -56,13 +56,6 @@ def test_on_tick_wrong_behaviour_is_corrected_after_the_patience() -> None:
     assert corrections == [(PATIENCE_TICKS, Correct("s-mid-1", NAME, "turn_left", level=MID))]
 
 
-def test_on_tick_right_behaviour_phase_1_or_override_gives_none() -> None:
-    long = 10 * PATIENCE_TICKS
-    assert said(dispatcher(), wants("turn_left"), BEFORE_THE_FIRST, long) == []
-    assert said(dispatcher(Phase.SUPERVISED), wants("turn_right"), BEFORE_THE_FIRST, long) == []
-    assert said(dispatcher(), wants("turn_right", overridden=True), BEFORE_THE_FIRST, long) == []
-
-
 def test_on_tick_corrects_after_the_junction_is_noticed() -> None:
     person = dispatcher()
     assert said(person, wants("turn_left"), IN_THE_FIRST, 200) == []
@@ -89,13 +82,6 @@ def test_on_tick_missed_junction_is_commanded_not_taught() -> None:
     assert [command for _, command in commands][:1] == [Pursue("s-mid-1", NAME, "straight_on")]
     assert commands[0][0] == NOTICES_WITHIN_TICKS
     assert person.missed == 1
-
-
-def test_on_tick_standing_robot_has_not_missed_a_junction() -> None:
-    person = dispatcher()
-    said(person, wants("turn_left"), IN_THE_FIRST, 10)
-    stands = record(MidDecision("turn_left", 1, None, asks=False, overridden=False, event=None), drives=False)
-    assert said(person, stands, BEHIND_THE_FIRST, 3 * NOTICES_WITHIN_TICKS) == []
 
 
 def test_answers_with_errors_name_another_behaviour() -> None:

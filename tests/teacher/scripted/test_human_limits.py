@@ -18,11 +18,6 @@ def test_draw_median_is_that_of_the_settings() -> None:
     assert 118 < statistics.median(drawn("x")) < 132
 
 
-def test_draw_delay_grows_with_the_minutes() -> None:
-    fresh, tired = drawn("x"), drawn("x", now=6000 * 10, slower_per_minute=0.1)
-    assert all(abs(later - 2 * sooner) <= 1 for sooner, later in zip(fresh, tired, strict=True))
-
-
 def test_is_on_lapses_have_the_set_rate_and_duration() -> None:
     duration = LogNormalDelay(kind="log_normal", median_s=2.0, spread=0.0, longest_s=9.0)
     attention = AttentionLapses(LapseSettings(per_minute=2.0, duration=duration), 0.01, "x")

@@ -3,7 +3,7 @@
 from itertools import count
 
 from kurt2rt.core.teacher_settings import LogNormalDelay
-from kurt2rt.core.teaching.commands import Command, Correct, Resume
+from kurt2rt.core.teaching.commands import Command, Correct
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 from kurt2rt.teacher.scripted.human_limits import DelaySampler
 from kurt2rt.teacher.scripted.look_back import LookBack, Mistake
@@ -45,12 +45,6 @@ class Rewinding:
         raise AssertionError("no command within 10 s")
 
 
-def test_update_waits_until_the_robot_stands() -> None:
-    person = Rewinding()
-    person.see(drives(100))
-    assert [person.see(drives(tick)) for tick in range(101, 500)] == [None] * 399
-
-
 def test_update_names_the_action_of_the_moment_after_looking() -> None:
     person = Rewinding()
     person.see(drives(100))
@@ -59,25 +53,6 @@ def test_update_names_the_action_of_the_moment_after_looking() -> None:
     assert isinstance(command, Correct)
     assert (command.action, command.decision_tick) == ("b", 40)
     assert person.look_back.slip is None
-
-
-def test_update_tells_the_lesson_of_a_slip() -> None:
-    person = Rewinding(is_slip=True)
-    person.see(drives(100))
-    _, command = person.wait_for_command(110)
-    assert isinstance(command, Correct)
-    assert person.look_back.slip == command.command_id
-
-
-def test_update_lets_the_robot_drive_on_at_once() -> None:
-    person = Rewinding()
-    person.see(drives(100))
-    taught, _ = person.wait_for_command(110)
-    tick, command = person.wait_for_command(taught + 1)
-    assert tick == taught + 1
-    assert isinstance(command, Resume)
-    assert command.seen_tick == tick
-    assert not person.look_back.over
 
 
 def test_update_is_over_when_the_robot_drives_or_asks() -> None:

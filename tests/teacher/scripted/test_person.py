@@ -90,18 +90,6 @@ def test_update_question_is_answered_after_delay_and_both_links() -> None:
     assert list(answers) == [1 + LINK_TICKS + QUESTION_TICKS + LINK_TICKS]
 
 
-def test_update_phase_1_does_not_correct() -> None:
-    assert given(person(Phase.SUPERVISED), [doing("b")] * 500) == {}
-
-
-def test_update_different_action_is_corrected_when_noticed() -> None:
-    corrections = given(person(), [doing("b")] * 130)
-    ((tick, correction),) = corrections.items()
-    assert isinstance(correction, Correct)
-    assert (correction.action, correction.decision_tick) == ("a", 1 + DIFFERENT_TICKS)
-    assert tick == 1 + DIFFERENT_TICKS + LINK_TICKS + MISTAKE_TICKS + LINK_TICKS
-
-
 @pytest.mark.parametrize(
     ("named", "decision_tick"), [("began", 1), ("noticed", 1 + DIFFERENT_TICKS), ("pressed", None), ("by_delay", None)]
 )
@@ -117,36 +105,11 @@ def test_update_similar_action_is_noticed_later() -> None:
     assert correction.decision_tick == 1 + SIMILAR_TICKS
 
 
-def test_update_short_disagreement_is_not_noticed() -> None:
-    views = ([doing("b")] * 35 + [doing("a")] * 10) * 10
-    assert given(person(), views) == {}
-
-
-def test_update_effect_of_a_press_is_awaited() -> None:
-    """Pictures from before the press could have an effect do not count for the next one."""
-    ticks = list(given(person(), [doing("b")] * 400))
-    least = DIFFERENT_TICKS + MISTAKE_TICKS + 2 * LINK_TICKS + 2 * PICTURE_TICKS
-    assert len(ticks) > 1
-    assert all(later - sooner >= least for sooner, later in pairwise(ticks))
-
-
-def test_update_answers_only_never_corrects() -> None:
-    teacher = person(profile={"corrects_by": "nothing"})
-    commands = given(teacher, [doing("b")] * 300 + [asking()] * 150)
-    assert [type(command) for command in commands.values()] == [Teach]
-
-
 def test_update_limit_of_presses_holds_in_every_minute() -> None:
     teacher = person(presses_per_minute=12)
     ticks = list(given(teacher, [doing("b")] * 20_000))
     assert len(ticks) >= 36
     assert all(later - sooner >= 6000 for sooner, later in zip(ticks, ticks[12:], strict=False))
-
-
-def test_update_question_beyond_the_limit_waits() -> None:
-    teacher = person(Phase.SUPERVISED, presses_per_minute=1)
-    first, second = list(given(teacher, [asking()] * 7000))
-    assert second - first == 6000
 
 
 def wrong_fraction(seed: int) -> float:
@@ -225,19 +188,6 @@ def test_update_wrong_button_that_is_noticed_is_undone() -> None:
     assert commands.index(stop) < commands.index(undo)
 
 
-def test_update_hold_counts_as_one_press() -> None:
-    teacher = person(profile=HOLDS, presses_per_minute=2)
-    presses = {each.press_id for each in given(teacher, [doing("b")] * 5000).values() if isinstance(each, HoldAction)}
-    assert presses == {1, 2}
-
-
-def test_update_question_is_answered_by_a_hold() -> None:
-    teacher = person(Phase.SUPERVISED, profile={"answers_by": "hold", "hold_s": 1.0})
-    commands = given(teacher, [asking()] * 230)
-    assert set(held(commands).values()) == {"a"}
-    assert not any(isinstance(each, Teach) for each in commands.values())
-
-
 REWINDS = {"corrects_by": "rewind"}
 
 
@@ -280,22 +230,6 @@ def test_update_touch_corrects_the_mistake_before_it() -> None:
     assert (correction.action, correction.decision_tick) == ("a", 51)
     assert isinstance(resume, Resume)
     assert not any(isinstance(each, Correct) for each in more)
-
-
-@pytest.mark.parametrize("phase", [Phase.SUPERVISED, Phase.CORRECTIONS])
-def test_update_touch_is_let_pass_if_not_its_way_or_phase(phase: Phase) -> None:
-    profile = LOOKS_BACK if phase is Phase.SUPERVISED else {"corrects_by": "press"}
-    assert corrected_ticks(person(phase, profile=profile), touched(wrong=25)) == []
-
-
-@pytest.mark.parametrize(("undone", "undos"), [(0.0, 0), (1.0, 1)])
-def test_update_own_wrong_press_is_undone_if_noticed(undone: float, undos: int) -> None:
-    errors = ErrorSettings(answers=1.0, corrections=0.0, undone=undone)
-    commands = list(given(person(Phase.SUPERVISED, errors=errors), [asking()] * 110 + [doing("a")] * 200).values())
-    answer = commands[0]
-    assert isinstance(answer, Teach)
-    taken_back = [each for each in commands if isinstance(each, Undo)]
-    assert [each.lesson for each in taken_back] == [answer.command_id] * undos
 
 
 def test_update_own_wrong_rewind_is_undone() -> None:

@@ -34,24 +34,6 @@ class Watched:
         return [each for each in found if each is not None]
 
 
-def test_update_without_progress_returns_a_passed_place() -> None:
-    robot = Watched()
-    for metres in range(6):
-        assert robot.is_at(1.2 * metres) is None
-    (to,) = robot.stays(6.1, 16.0)
-    assert to.x_m in (0.0, 1.2, 2.4, 3.6, 4.8)
-    assert to.heading_rad == 0.5
-    assert robot.stays(to.x_m, 14.0) == []  # the time starts again there
-
-
-def test_update_waits_longer_in_a_slow_lesson() -> None:
-    robot = Watched(lesson_speed=0.5)
-    robot.is_at(0.0)
-    robot.is_at(1.2)
-    assert robot.stays(1.2, 29.0) == []
-    assert len(robot.stays(1.2, 2.0)) == 1
-
-
 def test_update_with_progress_or_waiting_returns_none() -> None:
     robot = Watched()
     assert [robot.is_at(0.05 * step) for step in range(200)] == [None] * 200

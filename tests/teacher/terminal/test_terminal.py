@@ -29,12 +29,10 @@ from kurt2rt.core.teaching.commands import (
     Appraise,
     BeAt,
     Correct,
-    HoldAction,
     NameSituation,
     Resume,
     Reward,
     Seek,
-    SetLessonSpeed,
     SetPhase,
     StopSeeking,
     Take,
@@ -190,29 +188,6 @@ async def test_motion_typed_before_a_stop_is_not_sent_after_it(pairing: Pairing,
         assert [each.phase for each in robot.all_of(SetPhase)] == [Phase.CORRECTIONS]
 
 
-async def test_speed_sets_the_speed_of_lessons(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        robot.mind = RobotStub()
-        console.type("speed 60")
-        await console.reads("/lesson/speed is done")
-        console.type("speed 10")
-        await console.reads("refused:")
-        assert [each.percent for each in robot.all_of(SetLessonSpeed)] == [60]
-
-
-async def test_go_typed_after_a_stop_is_sent_after_it(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        robot.mind = mind = RobotStub(StopRequest)
-        console.type("stop")
-        console.type("go")
-        await robot.hears(StopRequest, 3, copies=True)
-        assert robot.all_of(Resume) == []
-        mind.may_answer.set()
-        await console.reads("/resume is done")
-
-
 async def test_reward_has_the_tick_of_its_typing(pairing: Pairing, robot: StandInRobot) -> None:
     async with console_at(pairing, robot.port) as console:
         await console.reads("/take is done")
@@ -240,36 +215,6 @@ async def test_reward_has_the_tick_of_its_typing(pairing: Pairing, robot: StandI
         ]
         assert [(each.action, each.decision_tick) for each in robot.all_of(Teach)] == [("forward", ticks[3])]
         assert (correction.action, correction.decision_tick) == ("spin_left", ticks[4])
-
-
-async def test_rewind_corrects_a_moment_before_the_standstill(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        robot.mind = RobotStub()
-        drove = await looked_at(console, robot, left_m_s=0.3, right_m_s=0.3)
-        await looked_at(console, robot, left_m_s=0.0, right_m_s=0.0)
-        console.type("rewind 0.05 spin_left")
-        (correction,) = await robot.hears(Correct)
-        assert (correction.action, correction.decision_tick) == ("spin_left", drove - 5)
-
-
-async def test_hold_sends_the_action_for_its_time(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        console.type("hold spin_left 0.2")
-        stop = (await robot.hears(StopRequest))[-1]
-        holds = robot.all_of(HoldAction)
-        assert {(each.action, each.press_id) for each in holds} == {("spin_left", stop.press_id)}
-        assert len(holds) > 1
-
-
-async def test_action_of_a_driving_robot_is_a_late_correction(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        tick = await looked_at(console, robot, cause="rla", action="forward", rla=3, nearest=3, distance=12.0)
-        console.type("spin_left")
-        (correction,) = await robot.hears(Correct)
-        assert (correction.action, correction.decision_tick, correction.late) == ("spin_left", tick, True)
 
 
 async def test_invalid_line_does_not_end_teaching(pairing: Pairing, robot: StandInRobot) -> None:
