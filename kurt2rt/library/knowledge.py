@@ -66,7 +66,7 @@ class Knowledge:
             robot=robot,
             rlas=system.rlas,
             events=tuple(events),
-            lessons=system.standing_lessons,
+            lessons=system.history.standing,
             statistics=statistics,
         )
 

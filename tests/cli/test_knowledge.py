@@ -93,7 +93,7 @@ def test_undo_then_redo_restores_the_lesson(kurt2rt: CommandLine, tmp_path: Path
     mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
     before = folded(mine)
     kurt2rt("knowledge", "undo", mine)
-    assert f"(lesson {before.last_standing_lesson} " in kurt2rt("knowledge", "redo", mine).out
+    assert f"(lesson {before.history.last_standing} " in kurt2rt("knowledge", "redo", mine).out
     assert folded(mine).rlas == before.rlas
     assert str(mine) in kurt2rt.refused("knowledge", "redo", mine)
     assert "command line" not in kurt2rt("knowledge", "lessons", mine, "--limit", "1").out

@@ -75,7 +75,7 @@ class LessonList:
                 yield command_id, record.text, (record,)
                 continue
             holds.add(hold)
-            given = tuple(filter(None, map(self._system.lesson, self._system.lessons_of_hold(hold))))
+            given = tuple(filter(None, map(self._system.lesson, self._system.history.of_hold(hold))))
             yield hold, hold_text(given), (record, *(each for each in given if each is not record))
 
 

@@ -93,7 +93,7 @@ class StateBuilder:
             by_hand=commands.authority.is_manual(record.tick),
             stopped=commands.active_stop or _latched(record),
             rlas=len(runtime.level.system),
-            lessons=runtime.level.system.standing_lessons,
+            lessons=runtime.level.system.history.standing,
             unsaved=parts.journal.unsaved(),
             session=commands.session,
             clock_s=commands.teaching_ticks(record.tick) * runtime.robot.cycle_s,

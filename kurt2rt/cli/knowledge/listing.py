@@ -72,4 +72,4 @@ def _row(path: Path) -> tuple[str, str, str, str, str]:
         entries, came = journal.entries(), journal.notes().get(IMPORTED_FROM, "")
         system = fold_entries(journal, entries, radius=math.inf)
     newest = entries[-1].stamped_at[:19].replace("T", " ") if entries else ""
-    return journal.binding.system, str(len(system)), str(system.standing_lessons), newest, came
+    return journal.binding.system, str(len(system)), str(system.history.standing), newest, came

@@ -68,7 +68,7 @@ class Critic:
 
         The search runs every `think_every_ticks` and after each lesson, because it would dominate a tick's time.
         """
-        lessons = self._system.standing_lessons
+        lessons = self._system.history.standing
         if tick >= self._next_tick or lessons != self._lessons:
             self._opinion = self.opinion(self.to_vector(circumstances))
             self._lessons = lessons

@@ -120,7 +120,7 @@ class SelfTeaching:
     def _undo(self, events: Iterable[LessonUndone]) -> Iterator[LessonUndone]:
         system, restored = self._system, list[Rla]()
         for event in events:
-            if system.why_not_undo(event.lesson) is not None:  # below a teacher's lesson
+            if system.history.why_not_undo(event.lesson) is not None:  # below a teacher's lesson
                 continue
             record = system.lesson(event.lesson)
             assert record is not None

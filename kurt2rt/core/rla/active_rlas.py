@@ -88,51 +88,58 @@ class ActiveRlas:
         self._indexes: dict[tuple[str, str], CandidateIndex] = {}
         """By level and behaviour."""
         self.radius_share = 1.0
-        """Fraction of R that counts at the basic level."""
+        """Fraction of R, 0 to 1, within which RLAs of the basic level answer now; 1 unless a robot asks sooner."""
+        self.is_guess: Callable[[Rla], bool] | None = None
+        """Predicate of guesses, which a robot without a teacher passes over at the basic level; None: none is one."""
         self._groups = CompetitorGroups()
         self._counts: Counter[str] = Counter()
 
-    def __iter__(self) -> Iterator[Rla]:
-        """Yield all RLAs, oldest first."""
-        return (self._rlas[rla_id] for rla_id in sorted(self._rlas))
+    def __len__(self) -> int:
+        return self._counts[BASIC]
 
     @property
-    def unsorted(self) -> tuple[Rla, ...]:
-        """All RLAs in no order: a copy that is cheap enough for each tick."""
-        return tuple(self._rlas.values())
+    def rlas(self) -> tuple[Rla, ...]:
+        """All active RLAs of the basic level, of all behaviours, oldest first."""
+        return self.rlas_at(BASIC)
 
-    def count(self, level: str) -> int:
-        """Return the number of active RLAs of a level."""
-        return self._counts[level]
+    def rlas_at(self, level: str) -> tuple[Rla, ...]:
+        """Return all active RLAs of a level, of all behaviours, oldest first."""
+        return tuple(rla for rla in self._oldest_first() if rla.level == level)
+
+    @property
+    def active_rlas(self) -> tuple[Rla, ...]:
+        """All active RLAs of all levels, in no order: a copy that is cheap enough for each tick."""
+        return tuple(self._rlas.values())
 
     def get(self, rla_id: int) -> Rla | None:
         """Return the active RLA of an id, of any level; None if there is none."""
         return self._rlas.get(rla_id)
 
     def match(
-        self,
-        situation: NDArray[np.float64],
-        behaviour: str,
-        level: str,
-        passes_over: Callable[[Rla], bool] | None = None,
+        self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC, *, include_withdrawn: bool = True
     ) -> Match | None:
-        """Return the RLA nearest to a situation (d,), and the runner-up; None if the level and behaviour have no RLA.
+        """Return the RLA of a level and taught behaviour nearest to a situation (d,), and the runner-up.
 
-        All distances are infinite if the situation holds NaN: the robot does not know its position.
-        `passes_over`: tells which RLAs do not answer; None: all answer.
+        Returns None if nothing was taught yet. All distances are infinite if the situation holds NaN: the robot does
+        not know its position. `include_withdrawn`: False passes over RLAs without an action, and guesses, for a robot
+        without a teacher.
         """
         index = self._indexes.get((level, behaviour))
         nearest = None if index is None else index.index.nearest(situation * index.weights)
         if index is None or nearest is None:
             return None
         rla = self._rlas[index.ids[nearest.position]]
-        if passes_over is not None and passes_over(rla):
-            return self._match_of_others(index, situation, passes_over)
+        if not include_withdrawn and self.passes_over(rla):
+            return self._match_of_others(index, situation)
         runner_up = self._rlas[index.ids[nearest.runner_up]] if nearest.runner_up >= 0 else None
         radius = self.radius_of(rla)
         if math.isnan(nearest.distance):
             return Match(rla, math.inf, radius, runner_up, math.inf)
         return Match(rla, nearest.distance, radius, runner_up, nearest.runner_up_distance)
+
+    def passes_over(self, rla: Rla) -> bool:
+        """Return whether a robot without a teacher lets neighbours of an RLA answer: of a withdrawn one and a guess."""
+        return rla.is_withdrawn or (rla.level == BASIC and self.is_guess is not None and self.is_guess(rla))
 
     def radius_of(self, rla: Rla) -> float:
         """Return the distance in counts, or m for a place, up to which an RLA of a matched level answers now."""
@@ -143,13 +150,11 @@ class ActiveRlas:
         """Return R of an RLA of a matched level in counts, or m for a place, also while the robot asks sooner."""
         return self._spaces[rla.level].radius if rla.radius is None else rla.radius
 
-    def _match_of_others(
-        self, index: CandidateIndex, situation: NDArray[np.float64], passes_over: Callable[[Rla], bool]
-    ) -> Match | None:
+    def _match_of_others(self, index: CandidateIndex, situation: NDArray[np.float64]) -> Match | None:
         """Return the nearest RLA that is not passed over. Computes all distances: rare, so not optimised."""
         distances = index.index.distances(situation * index.weights)
         order = np.argsort(distances, kind="stable").tolist()  # stable: the older of equally near RLAs comes first
-        found = list(islice((place for place in order if not passes_over(self._rlas[index.ids[place]])), 2))
+        found = list(islice((place for place in order if not self.passes_over(self._rlas[index.ids[place]])), 2))
         if not found:
             return None
         rla = self._rlas[index.ids[found[0]]]
@@ -160,7 +165,7 @@ class ActiveRlas:
         return Match(rla, float(distances[found[0]]), radius, runner_up, float(distances[found[1]]))
 
     def nearest_first(
-        self, situation: NDArray[np.float64], behaviour: str, level: str, limit: int | None
+        self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC, *, limit: int | None = None
     ) -> tuple[tuple[int, float], ...]:
         """Return (id, distance) of the RLAs of a level and behaviour, nearest to a situation (d,) first.
 
@@ -181,7 +186,7 @@ class ActiveRlas:
             (index.ids[place], math.inf if math.isnan(distances[place]) else float(distances[place])) for place in order
         )
 
-    def candidate_count(self, behaviour: str, level: str) -> int:
+    def candidate_count(self, behaviour: str = "", level: str = BASIC) -> int:
         """Return the number of RLAs that compete at a level for a behaviour."""
         index = self._indexes.get((level, behaviour))
         return 0 if index is None else len(index.ids)
@@ -198,22 +203,25 @@ class ActiveRlas:
         others = (self._rlas[rla_id] for rla_id in index.nearest_first(rla.condition))
         return tuple(islice((other for other in others if other.condition != rla.condition), count))
 
-    def add(self, rla: Rla) -> None:
+    def _oldest_first(self) -> Iterator[Rla]:
+        return (self._rlas[rla_id] for rla_id in sorted(self._rlas))
+
+    def _add(self, rla: Rla) -> None:
         """Add an RLA. Raises ValueError, changing nothing, if its condition cannot be matched."""
         space = self._spaces.get(rla.level)
         if space is not None:
             index = self._indexes.get((rla.level, rla.behaviour)) or CandidateIndex(space)
             index.add(rla.rla_id, rla.condition)
             self._indexes[rla.level, rla.behaviour] = index
-        self.replace(rla)
+        self._replace(rla)
         self._counts[rla.level] += 1
 
-    def replace(self, rla: Rla) -> None:
+    def _replace(self, rla: Rla) -> None:
         """Replace the active RLA that has the id and the condition of `rla`."""
         self._rlas[rla.rla_id] = rla
         self._groups.add_or_replace(rla)
 
-    def remove(self, rla: Rla) -> Rla:
+    def _remove(self, rla: Rla) -> Rla:
         """Remove an active RLA and return it. Raises KeyError if none has its id."""
         if rla.level in self._spaces:
             self._indexes[rla.level, rla.behaviour].remove(rla.rla_id)

@@ -138,6 +138,14 @@ class LessonHistory:
         """Return the command ids of all lessons of a hold, oldest first, undone ones included; empty if it has none."""
         return tuple(self._holds.get(hold, ()))
 
+    def unused_hold_id(self, hold: str) -> str:
+        """Return `hold`, or `hold` with the first free number if an earlier run's hold of this id gave lessons."""
+        unused, number = hold, 1
+        while unused in self._holds:
+            number += 1
+            unused = f"{hold}-{number}"
+        return unused
+
     def about(self, stack: LessonStack) -> tuple[LessonRecord, ...]:
         """Return all lessons of a stack, oldest first, undone ones included."""
         return tuple(self._records[place] for place in self._places_of.get(stack, ()))

@@ -153,7 +153,7 @@ class Demonstration:
         first, last = segments[0].from_tick, segments[-1].from_tick + segments[-1].ticks
         spans = [_steady_span(segments[index], first, last) for index in indexes]
         self._pending.extend(each for each in self._samples if any(each.tick in span for span in spans))
-        self._lesson = self._system.unused_hold_id(hold_id(self.teacher, press_id))
+        self._lesson = self._system.history.unused_hold_id(hold_id(self.teacher, press_id))
         self._origin = origin
         self.press_id = None
         return Outcome.of(

@@ -80,7 +80,7 @@ class HoldLessons:
 
     def begin(self, command: HoldAction, tick: int, speed: int) -> None:
         """Begin a press with its first message; `speed`: robot seconds in one second."""
-        lesson = self._system.unused_hold_id(hold_id(command.teacher, command.press_id))
+        lesson = self._system.history.unused_hold_id(hold_id(command.teacher, command.press_id))
         asked_tick = self._delay.asked_tick
         # The teacher of a robot that asks reacts to its question, not to something before it.
         earliest = tick - BACK_TICKS * speed if asked_tick is None else asked_tick

@@ -26,13 +26,13 @@ class UndoLessons:
 
         `named`: None: the last standing lesson, with the hold that it belongs to. Raises CommandRefusedError.
         """
-        lesson = named or self._system.last_standing_lesson
+        lesson = named or self._system.history.last_standing
         if lesson is None:
             raise CommandRefusedError(RefusalCode.NO_LESSON)
         hold = hold_of(lesson) if named is None else None
-        if hold is not None or self._system.lessons_of_hold(lesson):
+        if hold is not None or self._system.history.of_hold(lesson):
             return self._undo_hold(hold or lesson, origin)
-        refuse(self._system.why_not_undo(lesson))
+        refuse(self._system.history.why_not_undo(lesson))
         self._require_restorable(lesson)
         record = self._system.lesson(lesson)
         assert record is not None
@@ -40,9 +40,9 @@ class UndoLessons:
 
     def _undo_hold(self, hold: str, origin: Origin) -> LessonResult:
         """Undo all standing lessons of a hold, newest first; the last undo has the command's own id."""
-        refuse(self._system.why_not_undo_hold(hold))
+        refuse(self._system.history.why_not_undo_hold(hold))
         standing = []
-        for command_id in reversed(self._system.lessons_of_hold(hold)):
+        for command_id in reversed(self._system.history.of_hold(hold)):
             record = self._system.lesson(command_id)
             assert record is not None
             if not record.undone:

@@ -120,7 +120,7 @@ def _package(journal: Journal, robot: RobotSettings, task: TaskSettings, stamp: 
         "features": _features(LevelFeatures(binding.feature_hash, binding.feature_names)),
         "levels": {level: _features(features) for level, features in binding.levels.items()},
         "rlas": len(system),
-        "lessons": system.standing_lessons,
+        "lessons": system.history.standing,
     }
     # At the receiver a device of the same name is another person's, so the teachers' delays stay here.
     files = collect_attachments(robot, task, entries, replace(statistics, answer_delays={}))

@@ -132,7 +132,7 @@ def knowledge_data(journal: Journal) -> dict[str, Any]:
         "task": binding.system,
         "robot": binding.robot,
         "definition": binding.feature_hash,
-        "lessons": system.standing_lessons,
+        "lessons": system.history.standing,
         "rlas": [
             _rla_as_data(rla, taught[rla.origin.command_id], system, statistics, features[rla.level])
             for level in features
@@ -250,7 +250,7 @@ def _summary(entries: list[StoredEntry], system: RlaSystem) -> str:
     teachers = _names(record.event.origin.teacher for record in system.lessons)
     by = f" by {teachers}" if teachers else ""
     summary = (
-        f"{_how_many(system)} from {system.standing_lessons} lessons ({', '.join(parts)}){by}, "
+        f"{_how_many(system)} from {system.history.standing} lessons ({', '.join(parts)}){by}, "
         f"{entries[0].stamped_at} to {entries[-1].stamped_at}"
     )
     sessions = sum(isinstance(event, SessionBegun) for event in events)

@@ -61,7 +61,7 @@ def plan_undo(path: Path, lesson: str | None = None, taught_by: str | None = Non
             _require_possible(Outcome.of(RefusalCode.UNDONE_ALREADY, lesson=lesson), path)
     else:
         state = "stands; there is nothing to undo"
-        command_ids = [_select(path, lesson, system.last_standing_lesson, system.why_not_undo, state)]
+        command_ids = [_select(path, lesson, system.history.last_standing, system.history.why_not_undo, state)]
     changes = [LessonUndone(command_id, new_origin("undo", teacher)) for command_id in command_ids]
     _apply(system, changes, f"{path}: nothing was undone")
     return reading.planned(changes)
@@ -92,9 +92,9 @@ def plan_redo(path: Path, lesson: str | None = None, taught_by: str | None = Non
             _require_possible(Outcome.of(RefusalCode.STANDS_ALREADY, lesson=lesson), path)
     else:
         state = "was undone; there is nothing to redo"
-        command_ids = [_select(path, lesson, system.last_undone_lesson, system.why_not_redo, state)]
+        command_ids = [_select(path, lesson, system.history.last_undone, system.history.why_not_redo, state)]
     for command_id in command_ids:
-        refusal = system.why_not_redo(command_id)
+        refusal = system.history.why_not_redo(command_id)
         if refusal is not None:
             refusals.append(refusal)
             continue
@@ -201,7 +201,7 @@ def _undone_by_time(reading: _Reading, taught_by: str) -> list[str]:
 def _apply(system: RlaSystem, changes: Iterable[LessonUndone | LessonRedone], where: str) -> None:
     """Apply changes in order; raise KnowledgeError at `where` for the first one that does not fit."""
     for change in changes:
-        why_not = system.why_not_undo if isinstance(change, LessonUndone) else system.why_not_redo
+        why_not = system.history.why_not_undo if isinstance(change, LessonUndone) else system.history.why_not_redo
         _require_possible(why_not(change.lesson), where)
         system.apply(change)
 

@@ -273,7 +273,7 @@ class _Reader:
     def _rla_facts(self, rla: Rla, radius: float, distance: float) -> RlaFacts:
         counted, appraisal = self._runtime.statistics, self._system.appraisal(rla.rla_id)
         rewarded = appraisal.rewards or appraisal.punishments
-        lessons = self._system.lessons_about(rla.rla_id)
+        lessons = self._system.history.about(rla.rla_id)
         acts = tuple(self._lesson_fact(each) for each in lessons)
         uses = counted.uses.get(rla.rla_id, 0)
         before = self._uses_before.get(rla.rla_id)

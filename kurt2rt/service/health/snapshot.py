@@ -71,7 +71,7 @@ def take_snapshot(
         ticks=ledger.ticks,
         missed_ticks=ledger.missed_ticks,
         rlas=len(system),
-        lessons=system.standing_lessons,
+        lessons=system.history.standing,
         progress=runtime.progress.progress(),
         doing=_doing(record),
         broken_sensors=record.broken_sensors,

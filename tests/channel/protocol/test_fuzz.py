@@ -71,7 +71,7 @@ def effects(at_work: RobotAtWork) -> Effects:
         school.active_stop,
         school.session,
         len(system),
-        system.standing_lessons,
+        system.history.standing,
         school.corrections,
         len(at_work.runtime.inbox.pop_all()),
     )

@@ -140,7 +140,7 @@ def test_rollback_random_events_undos_fit(windows: list[tuple[list[Act], int]]) 
             if act == "delete":
                 happens(RlaDeleted(rla.rla_id, by))
             elif act == "undo":
-                last = knowledge.last_standing_lesson
+                last = knowledge.history.last_standing
                 if last is not None:
                     happens(LessonUndone(last, by))
             else:

@@ -44,8 +44,8 @@ def test_redo_after_undo_restores_the_knowledge(lesson: TeachingEvent) -> None:
     assert (again.rlas, again.lessons, again.next_id) == (taught.rlas, taught.lessons, taught.next_id)
     assert again.named_situations("basic") == taught.named_situations("basic")
     assert again.appraisal(1) == taught.appraisal(1)
-    assert again.last_standing_lesson == "it"
-    assert again.last_undone_lesson is None
+    assert again.history.last_standing == "it"
+    assert again.history.last_undone is None
     again.apply(undone("it"))
     assert again.knowledge_hash() == system_of(FIRST, SECOND).knowledge_hash()
 
@@ -58,7 +58,7 @@ def test_redo_several_in_taught_order_only() -> None:
     assert refusal is not None
     assert (refusal.code, refusal.fields["earlier"]) == (RefusalCode.STANDS_ON_UNDONE, "a")
     for lesson in ("lesson-1", "a", "b"):
-        assert system.last_undone_lesson == lesson
+        assert system.history.last_undone == lesson
         system.apply(redone(lesson))
     assert [rla.action for rla in system.rlas] == ["left"]
 
@@ -75,8 +75,8 @@ def test_redo_replaced_lesson_is_refused() -> None:
 
 def test_redo_standing_or_unknown_lesson_is_refused() -> None:
     system = system_of(FIRST)
-    assert system.why_not_redo("lesson-1") == Outcome.of(RefusalCode.STANDS_ALREADY, lesson="lesson-1")
-    assert system.why_not_redo("lesson-9") == Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson="lesson-9")
+    assert system.history.why_not_redo("lesson-1") == Outcome.of(RefusalCode.STANDS_ALREADY, lesson="lesson-1")
+    assert system.history.why_not_redo("lesson-9") == Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson="lesson-9")
 
 
 @examples(100)
@@ -106,5 +106,5 @@ def test_redo_random_sequences_equal_standing_lessons(
     standing.apply_all(record.event for record in system.lessons if not record.undone)
     assert system.rlas == standing.rlas
     assert system.knowledge_hash() == standing.knowledge_hash()
-    assert system.last_standing_lesson == standing.last_standing_lesson
-    assert system.standing_lessons == standing.standing_lessons
+    assert system.history.last_standing == standing.history.last_standing
+    assert system.history.standing == standing.history.standing

@@ -30,8 +30,8 @@ def everything(system: RlaSystem) -> tuple[object, ...]:
         system.knowledge_hash(),
         system.match(np.zeros(2)),
         system.lessons,
-        system.standing_lessons,
-        system.last_standing_lesson,
+        system.history.standing,
+        system.history.last_standing,
         system.appraisal(1),
         system.appraisal(2),
         system.teaching_ticks,
@@ -193,7 +193,7 @@ def test_behaviours_in_one_system_equal_separate_systems(steps: list[tuple[str, 
         for situation in ([0.0, 0.0], [1 / 3, 0.0], [0.4, 1e-9], [-7.0, 1e5]):
             here = np.array(situation)
             assert together.match(here, behaviour) == system.match(here, behaviour)  # bit for bit
-    assert together.standing_lessons == sum(system.standing_lessons for system in alone.values())
+    assert together.history.standing == sum(system.history.standing for system in alone.values())
     assert [rla.rla_id for rla in together.rlas] == sorted(rla.rla_id for rla in together.rlas)
 
 

@@ -47,7 +47,7 @@ def test_undo_of_older_lesson_names_the_newest() -> None:
     says = "RLA 1 corrected: back instead of forward"
     assert refusal == Outcome.of(RefusalCode.TAUGHT_AFTER, later="phone-7", lesson="lesson-1", says=says)
     system.apply(undone("phone-7"))  # though the lesson of another RLA came after it
-    assert system.why_not_undo("lesson-1") is None
+    assert system.history.why_not_undo("lesson-1") is None
     system.apply(undone("lesson-1"))
     assert system.rlas == (SECOND.rla,)
 
@@ -62,17 +62,17 @@ def test_undo_twice_is_refused() -> None:
 
 def test_lessons_list_all_with_their_state() -> None:
     system = system_of()
-    assert (system.lessons, system.standing_lessons, system.last_standing_lesson) == ((), 0, None)
+    assert (system.lessons, system.history.standing, system.history.last_standing) == ((), 0, None)
     praise = rewarded(2)
     system.apply_all([FIRST, SECOND, praise, *session(100), undone("lesson-1")])
     assert system.lessons == (LessonRecord(FIRST, undone=True), LessonRecord(SECOND), LessonRecord(praise))
-    assert (system.standing_lessons, system.last_standing_lesson) == (2, "reward-2")
+    assert (system.history.standing, system.history.last_standing) == (2, "reward-2")
     assert system.lesson("lesson-1") == LessonRecord(FIRST, undone=True)
     assert system.lesson("begin") is None
     system.apply(undone("reward-2"))
-    assert (system.standing_lessons, system.last_standing_lesson) == (1, "lesson-2")
+    assert (system.history.standing, system.history.last_standing) == (1, "lesson-2")
     system.apply(undone("lesson-2"))
-    assert (system.standing_lessons, system.last_standing_lesson) == (0, None)
+    assert (system.history.standing, system.history.last_standing) == (0, None)
 
 
 _STEPS = st.lists(
@@ -127,8 +127,8 @@ def test_undo_random_sequences_equal_standing_lessons(steps: list[tuple[str, int
     assert [system.appraisal(rla.rla_id) for rla in system.rlas] == [
         direct.appraisal(rla.rla_id) for rla in direct.rlas
     ]
-    assert (system.standing_lessons, len(system.lessons)) == (len(standing), len(standing) + undos)
-    assert system.last_standing_lesson == (list(standing)[-1] if standing else None)
+    assert (system.history.standing, len(system.lessons)) == (len(standing), len(standing) + undos)
+    assert system.history.last_standing == (list(standing)[-1] if standing else None)
     for situation in ([0.0, 0.0], [1 / 3, 0.0], [0.4, 1e-9], [3e19, 0.0], [-7.0, 1e5]):
         assert system.match(np.array(situation)) == direct.match(np.array(situation))  # bit for bit
     for rla in system.rlas:

@@ -264,7 +264,7 @@ def test_an_undo_is_tried_on_the_runs_that_are_named(kurt2rt: CommandLine, knowl
     said = kurt2rt("knowledge", "undo", knowledge, "--lesson", "far-1", "--dry-run", "--runs", recordings).out
     assert "not one" in said
     assert "nowhere: " in kurt2rt.refused("knowledge", "undo", knowledge, "--runs", "nowhere")
-    assert folded(knowledge).last_standing_lesson == "far-2"
+    assert folded(knowledge).history.last_standing == "far-2"
 
 
 class Typed(io.StringIO):
@@ -280,7 +280,7 @@ def test_at_a_terminal_an_undo_asks_first(kurt2rt: CommandLine, knowledge: Path)
         assert refused.exit_code == 1
         assert "far-2" in refused.err
         assert "[y/N]" in refused.err
-        assert folded(knowledge).last_standing_lesson == "far-2"
+        assert folded(knowledge).history.last_standing == "far-2"
     agreed = kurt2rt("knowledge", "undo", knowledge, "--teacher", "Ann", typed=Typed("y\n"))
     assert " 2 " in agreed.err
     assert "[y/N]" in agreed.err
