@@ -105,15 +105,6 @@ class Run:
         return [record.tick for record in self.records[before:]]
 
 
-async def test_scheduler_ticks_at_multiples_of_the_period() -> None:
-    run = Run(HandClock(1000.0))
-    assert await run.ticks(5) == [1, 2, 3, 4, 5]
-    assert run.clock.deadlines_s == [1000.0 + number * PERIOD_S for number in range(1, 6)]
-    assert [record.now_s for record in run.records] == run.clock.deadlines_s
-    assert [record.readings.time_s for record in run.records] == run.clock.deadlines_s
-    assert (run.ledger.ticks, run.ledger.missed_ticks) == (5, 0)
-
-
 async def test_deadlines_do_not_drift_with_late_ticks() -> None:
     run = Run(HandClock())
     run.delays_s = dict.fromkeys(range(1, 500), 0.006)  # each tick's work takes more than half the period

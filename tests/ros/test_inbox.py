@@ -1,7 +1,5 @@
 """Inbox of one topic: order, ages, junk, and limits against floods."""
 
-import pytest
-
 from kurt2rt.ros.inbox import Inbox
 from kurt2rt.ros.messages import InvalidMessageError, String, TwistStamped, encode
 from kurt2rt.ros.port import LocalTopics
@@ -40,24 +38,6 @@ def test_inbox_age_is_of_stamp_and_waiting_together() -> None:
     topics.join().publisher(twists).publish(TwistStamped(HEADER, TWIST))  # stamped 0.25 s before its arrival
     clock.now += 0.5
     assert list(inbox.take(lambda _, age_s: age_s)) == [0.75]
-
-
-@pytest.mark.parametrize(("one_sender", "taken"), [(False, 2), (True, 1)])
-def test_inbox_repeated_stamp_is_junk_of_one_sender(one_sender: bool, taken: int) -> None:
-    topics, twists = LocalTopics(RosSettings()), topic_of("twists", TwistStamped)
-    inbox = Inbox(topics.join(), twists, TwistStamped, SetClock(), one_sender=one_sender)
-    for _ in range(2):
-        topics.join().publisher(twists).publish(TwistStamped(HEADER, TWIST))
-    assert len(list(inbox.take(lambda _, age_s: age_s))) == taken
-    assert inbox.junk == 2 - taken
-
-
-def test_inbox_flood_keeps_the_newest() -> None:
-    topics = LocalTopics(RosSettings())
-    inbox, sender = inbox_of_words(topics), topics.join().publisher(WORDS)
-    for number in range(1000):
-        sender.publish(String(str(number)))
-    assert list(inbox.take(text_of)) == [str(number) for number in range(984, 1000)]
 
 
 def test_inbox_invalid_huge_and_refused_messages_are_junk() -> None:

@@ -30,38 +30,10 @@ def reduce(message: LaserScan, *, zero_is_far: bool = False) -> tuple[float, ...
     return SectorReduction(HEADINGS, zero_is_far=zero_is_far).distances_m(message)
 
 
-def with_ray(angle_deg: int, range_m: float, others_m: float = math.inf) -> LaserScan:
-    ranges = [others_m] * RAYS
-    ranges[angle_deg] = range_m
-    return scan(ranges)
-
-
-@pytest.mark.parametrize(("angle_deg", "sector"), [(0, 0), (7, 0), (8, 1), (22, 1), (23, 2), (352, 23), (353, 0)])
-def test_sectors_ray_belongs_to_its_nearest_heading(angle_deg: int, sector: int) -> None:
-    found = reduce(with_ray(angle_deg, 1.5))
-    assert [index for index, distance in enumerate(found) if distance < math.inf] == [sector]
-    assert found[sector] == 1.5
-
-
 @given(st.lists(st.floats(0.125, 3.5, width=32), min_size=RAYS, max_size=RAYS))
 def test_sectors_distance_is_the_nearest_of_their_rays(ranges: list[float]) -> None:
     expected = [min(ranges[(heading + offset) % RAYS] for offset in range(-7, 8)) for heading in HEADINGS]
     assert list(reduce(scan(ranges))) == expected
-
-
-@pytest.mark.parametrize(
-    ("range_m", "distance_m"),
-    [(math.inf, math.inf), (3.6, math.inf), (-math.inf, NEAR), (0.05, NEAR), (-1.0, NEAR), (1.25, 1.25)],
-)
-def test_sectors_ranges_out_of_limits_are_far_or_nearest(range_m: float, distance_m: float) -> None:
-    found = reduce(scan([range_m] * RAYS))
-    assert found == pytest.approx([distance_m] * len(HEADINGS))
-
-
-def test_sectors_nan_is_passed_over_if_others_measure() -> None:
-    assert reduce(with_ray(90, math.nan, others_m=2.0)) == (2.0,) * 24
-    assert reduce(with_ray(90, 2.0, others_m=math.nan))[6] == 2.0
-    assert sum(map(math.isnan, reduce(with_ray(90, 2.0, others_m=math.nan)))) == 23
 
 
 def test_sectors_scan_of_front_alone_leaves_the_rest_unmeasured() -> None:

@@ -1,27 +1,16 @@
 """Features of the critic are computed only where something reads them; the drives are the same."""
 
 import anyio
-import pytest
 
 from behaviors.metrics.task_metric import TaskMetric
-from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
-from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
+from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
-from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, Signs
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 
 DRIVES = RlaCreated(Rla(1, (0.0,) * 72, "forward", 1e5, Origin("c-1", "Ann", Phase.SUPERVISED, 1)))
-
-
-def appraisal() -> RlaCreated:
-    critic = load_critic(short_task().critic)
-    name = critic.appraisals[0].name
-    return RlaCreated(
-        Rla(2, (0.0,) * len(critic.names), name, 1e5, Origin("c-2", "Ann", Phase.CRITIC, 2), level=CRITIC)
-    )
 
 
 def drive(events: list[TeachingEvent], *, appraises: bool) -> tuple[DriveRow, list[TickRecord]]:
@@ -45,20 +34,3 @@ def test_an_exam_is_the_same_without_the_critics_features() -> None:
     assert all(record.appraisal_features is None for record in no_features)
     assert all(record.appraisal_features is not None for record in features)
     assert [each.decision for each in no_features] == [each.decision for each in features]
-
-
-def test_a_taught_critic_always_appraises() -> None:
-    _, records = drive([DRIVES, appraisal()], appraises=False)
-    assert all(record.appraisal_features is not None and record.opinion is not None for record in records)
-
-
-@pytest.mark.parametrize(
-    ("phase", "signs", "appraises"),
-    [
-        (Phase.CORRECTIONS, "none", False),
-        (Phase.CORRECTIONS, "judge", True),
-        (Phase.AUTONOMOUS, "none", True),
-    ],
-)
-def test_a_plan_tells_whether_anything_is_appraised(phase: Phase, signs: Signs, appraises: bool) -> None:
-    assert LessonPlan(((Phase.SUPERVISED, 1.0), (phase, 1.0)), signs=signs).appraises is appraises

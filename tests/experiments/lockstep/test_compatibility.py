@@ -19,9 +19,3 @@ def test_a_course_that_a_world_cannot_give_is_refused(task: str, worlds: tuple[s
     require_metric(STAGE, load_task(task), [fits])
     with pytest.raises(SettingsError, match=why):
         require_metric(STAGE, load_task(task), [fits, does_not])
-
-
-def test_require_metric_refuses_behaviours_without_an_exit() -> None:
-    task = load_task("streets").model_copy(update={"behaviours": ("fly",)})
-    with pytest.raises(SettingsError, match="straight_on"):
-        require_metric(STAGE, task, ["manhattan"])

@@ -11,16 +11,9 @@ from config.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
-from tests.experiments.helpers import ROBOT, STAGE, teachers_drive
+from tests.experiments.helpers import ROBOT, STAGE
 
 TASKS = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))
-UNITS = {
-    "wall_following": "laps",
-    "fleeing": "m",
-    "circle": "rounds",
-    "circle_repositioned": "rounds",
-    "eight": "eights",
-}
 
 
 def lasting(name: str, supervised_s: float = 4.0, corrections_s: float = 4.0, exam_s: float = 7.0) -> TaskSettings:
@@ -36,16 +29,6 @@ def lesson(task: TaskSettings, folder: Path) -> TrainingResult:
         return result
 
     return anyio.run(teach)
-
-
-@pytest.mark.parametrize("name", ["fleeing", "circle", "eight"])  # those of the others drive in other tests
-def test_the_teacher_drives_what_he_teaches(name: str) -> None:
-    drive = teachers_drive(lasting(name))
-    assert drive.unit == UNITS.get(name, "junctions")
-    assert (drive.collisions, drive.stuck, drive.alarm) == (0, False, "")
-    assert 1.0 < drive.way_m < 4.0
-    if name != "eight":  # of which the first half takes longer
-        assert drive.progress > 0.0
 
 
 @pytest.mark.parametrize("name", TASKS)
@@ -85,13 +68,6 @@ def test_other_reading_is_not_called_plain(change: dict[str, str]) -> None:
 def test_a_name_that_is_no_name_of_a_file_is_refused(name: str) -> None:
     with pytest.raises(SettingsError, match=r"circle\.yaml: name: "):
         load_task("circle", changes={"name": name})
-
-
-def test_three_behaviours_are_taught_in_one_lesson_into_one_file(tmp_path: Path) -> None:
-    result = lesson(lasting("streets", 30.0, 0.0), tmp_path)
-    assert {rla.behaviour for rla in result.rlas} == {"straight_on", "turn_left", "turn_right"}
-    assert result.unit == "junctions"
-    assert result.findings["junctions"] >= 1.0
 
 
 def test_the_robot_is_set_down_anew_where_the_task_says_so(tmp_path: Path) -> None:

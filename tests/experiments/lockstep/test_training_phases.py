@@ -63,20 +63,6 @@ def test_phase_4_teaches_the_critic_after_repositioning(taught: Taught, tmp_path
     assert len(result.agreement) == 1
 
 
-def test_phase_5_rescues_an_untaught_robot(tmp_path: Path) -> None:
-    task = short_task()
-    task = task.model_copy(update={"teaching": task.teaching.model_copy(update={"rescue_after_s": 1.5})})
-
-    async def lesson() -> tuple[TrainingResult, list[TeachingEvent]]:
-        plan = of_phase(Phase.AUTONOMOUS)
-        return await run_lesson(STAGE, ROBOT, task, tmp_path / "k", seed=1, report=lambda *_: None, plan=plan)
-
-    result, events = anyio.run(lesson)
-    assert events == []
-    assert result.rescues == result.unknown_rescues == sum(minute.rescued for minute in result.workload) == 3
-    assert result.share_unknown > 0.99
-
-
 def test_blame_by_chance_needs_no_judge_and_the_judge_s_does(taught: Taught, tmp_path: Path) -> None:
     blind = taught.task.model_copy(update={"judge": None})
     plan = of_phase(Phase.REINFORCEMENT, signs="chance", blame_by_chance=3)
@@ -117,21 +103,3 @@ def test_exam_after_phase_5_uses_its_values(alone: Statistics | None, drives: bo
         return exam.way_m
 
     assert (anyio.run(drive) > 0.3) is drives
-
-
-@pytest.mark.parametrize("stuck_ends", [True, False])
-def test_a_stuck_robot_ends_its_exam_or_is_set_down_and_goes_on(stuck_ends: bool) -> None:
-    task = short_task(exam_s=5.0, stuck_after_s=1.5, radius=1e5)
-
-    async def drive() -> tuple[bool, int, float]:
-        simulation = STAGE.open("a", 1, "exam")
-        try:
-            setup = ExamSetup("a", 1, events=[knows_only("stand")], stuck_ends=stuck_ends)
-            exam = await examine(simulation, ROBOT, task, setup, lambda _: None)
-        finally:
-            simulation.close()
-        return exam.stuck, exam.rescues, exam.duration_s
-
-    stuck, rescues, duration_s = anyio.run(drive)
-    assert stuck
-    assert (rescues, round(duration_s, 1)) == ((0, 1.5) if stuck_ends else (3, 5.0))

@@ -31,15 +31,6 @@ def notices(reports: list[tuple[float, Report]]) -> list[str]:
     return [each.text for _, each in reports if isinstance(each, NoticeReport)]
 
 
-@pytest.mark.parametrize("boots_for_ms", [0, 130, 2500, 8000])
-@pytest.mark.parametrize("ending", [b"\n", b"\r\n"])
-def test_board_that_boots_is_greeted_at_its_one_opening(boots_for_ms: int, ending: bytes) -> None:
-    board = Board(boots_for_ms=boots_for_ms, ending=ending)
-    greet(board)
-    assert board.now_ms <= boots_for_ms + 1000
-    assert board.link.junk == 0
-
-
 @given(
     uptime_ms=st.one_of(
         st.integers(100, 4000), st.integers(4000, 10**8), st.integers(-4000, 4000).map(lambda ms: COUNTERS + ms)
@@ -60,15 +51,6 @@ def test_board_that_restarts_is_read_within_a_second(uptime_ms: int, boots_for_m
     assert len(settled_s) >= 49
     assert max(settled_s) < STALE_S
     assert sum(abs(each.left_ticks) for _, each in reports if isinstance(each, WheelReport)) <= 2 * 20
-
-
-def test_board_after_49_days_goes_on() -> None:
-    board = Board(uptime_ms=COUNTERS - 1000)
-    greet(board)
-    board.ticks_ms = 2
-    reports = drive(board, 3.0)
-    assert all(now_s - each.at_s < STALE_S for now_s, each in reports)
-    assert sum(each.left_ticks for _, each in reports if isinstance(each, WheelReport)) == pytest.approx(6000, abs=80)
 
 
 @pytest.mark.parametrize(

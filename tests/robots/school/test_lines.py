@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hal.byte_port import MemoryPort
-from kurt2rt.robots.school.lines import NUMBERS, Lines, encode
+from kurt2rt.robots.school.lines import Lines, encode
 
 NUMBER = st.integers(-9_999_999_999, 9_999_999_999)
 
@@ -45,20 +45,3 @@ def test_lines_after_noise_are_read_again() -> None:
     far_end.write(b"\n" + encode("brake", 1))
     assert lines.read() == [("brake", (1,))]
     assert lines.junk > 0
-
-
-def test_lines_without_an_end_are_dropped() -> None:
-    port, far_end = MemoryPort.pair()
-    lines = Lines(port)
-    for _ in range(1000):
-        far_end.write(b"x" * 100)
-        assert lines.read() == []
-    assert lines.junk > 0
-    assert len(lines._rest) <= 160
-
-
-def test_lines_are_numbered_and_begin_again() -> None:
-    port, far_end = MemoryPort.pair()
-    lines = Lines(port, NUMBERS - 1)
-    assert [lines.write("brake"), lines.write("brake")] == [NUMBERS - 1, 0]
-    assert far_end.read() == encode("brake", NUMBERS - 1) + encode("brake", 0)

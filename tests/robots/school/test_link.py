@@ -9,7 +9,7 @@ from hal.bus import BusError
 from hal.byte_port import MemoryPort
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, WheelSpeeds
-from hal.robot_link import ForeignCommandReport, RangeReport, WheelReport
+from hal.robot_link import ForeignCommandReport, RangeReport
 from kurt2rt.robots.school.lines import encode
 from kurt2rt.robots.school.link import SchoolLink
 from kurt2rt.robots.school.simulated import SchoolElectronics
@@ -46,25 +46,6 @@ def test_link_another_version_or_robot_is_refused(greeting: tuple[int, ...]) -> 
     with pytest.raises(BusError, match=r"greets with version and sensors .*allowed is \(1, 7\); load a robot file"):
         far.link.receive(0.0)
     assert not far.link.greeted
-
-
-def test_link_reports_readings_and_the_ticks_between_two_lines() -> None:
-    far = FarEnd()
-    far.sense(20, 100, -100)
-    far.sense(40, 116, -92)
-    reports = far.link.receive(5.0)
-    assert [each for each in reports if isinstance(each, RangeReport)][-1] == RangeReport(5.0, 0, READINGS)
-    assert [each[1:] for each in reports if isinstance(each, WheelReport)] == [(0, 0, 0.0), (16, 8, 0.02)]
-
-
-def test_link_lost_line_takes_its_ticks_along() -> None:
-    far = FarEnd()
-    far.sense(20, 100, 100)
-    far.link.receive(5.0)
-    far.number += 1
-    far.sense(60, 132, 132)
-    (_, wheels) = far.link.receive(5.04)
-    assert wheels[1:] == (32, 32, 0.04)
 
 
 def test_link_lines_of_a_stall_are_as_old_as_they_are() -> None:

@@ -7,9 +7,7 @@ import numpy as np
 import pytest
 
 from hal.numerics import cos_sin
-from kurt2rt.robots.turtlebot.lidar import Lidar, distances_m
-from simbridge.contracts.simulation import Pose
-from simbridge.robot.noise import Noise
+from kurt2rt.robots.turtlebot.lidar import distances_m
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.world import World
 from simbridge.worlds.world_loading import load_world
@@ -26,18 +24,3 @@ def test_distances_are_those_of_the_ray_caster(name: str) -> None:
         caster.set_origin(pose.x_m, pose.y_m)
         expected = [caster.distance_m(pose.x_m, pose.y_m, *cos_sin(each), 10.0) for each in headings]
         assert distances_m(settings, pose, np.array(headings)) == pytest.approx(expected, abs=1e-9)
-
-
-def lidar_in(name: str) -> Lidar:
-    return Lidar(SETTINGS, World(load_world(name, SETTINGS)), Noise(1, "lidar"))
-
-
-def test_lidar_noise_is_that_of_the_settings() -> None:
-    lidar, pose = lidar_in("turtlebot/a"), Pose(0.75, 0.5, 0.3)
-    headings = 0.3 + math.tau / 360 * np.arange(360, dtype=np.float64)
-    exact = distances_m(load_world("turtlebot/a", SETTINGS), pose, headings)
-    errors = []
-    for _ in range(20):
-        lidar.measure_all(pose)
-        errors.append(lidar.counts.ranges_m - exact)
-    assert np.std(errors) == pytest.approx(SETTINGS.lidar.noise_m, rel=0.05)

@@ -10,7 +10,7 @@ import pytest
 from hal.guard_reason import GuardReason
 from hal.odometry import PlanePose
 from hal.robot import STANDSTILL, WheelSpeeds
-from hal.robot_link import AlarmReport, NoticeReport, RangeReport, Report, WheelReport
+from hal.robot_link import AlarmReport, NoticeReport, Report, WheelReport
 from kurt2rt.robots.turtlebot.lidar import ScanReadings
 from kurt2rt.robots.turtlebot.link import TurtlebotLink
 from kurt2rt.robots.turtlebot.simulated import SimulatedClock
@@ -61,28 +61,8 @@ def wire() -> Wire:
     return Wire()
 
 
-def counts_of(reports: list[Report]) -> dict[int, int]:
-    return {report.first: report.counts[0] for report in reports if isinstance(report, RangeReport)}
-
-
 def wheels_of(reports: list[Report]) -> list[WheelReport]:
     return [report for report in reports if isinstance(report, WheelReport)]
-
-
-def test_scan_each_sector_reads_its_nearest_range(wire: Wire) -> None:
-    ranges = [2.0] * 360
-    ranges[95] = 0.2  # in the sector of 90 degrees, the seventh of the table
-    wire.scan(ranges)
-    counts = counts_of(wire.receive())
-    assert counts[6] == round(SETTINGS.infrared.counts_at(0.2))
-    assert {value for sector, value in counts.items() if sector != 6} == {0}
-
-
-def test_scan_with_a_repeated_stamp_is_junk(wire: Wire) -> None:
-    for _ in range(3):
-        wire.scan([0.5] * 360, stamp_s=1.0)
-    assert len(counts_of(wire.receive())) == 24
-    assert wire.link.junk == 2
 
 
 def test_topics_whose_stamps_stand_still_are_named(wire: Wire) -> None:
@@ -144,64 +124,12 @@ def test_scan_that_was_delayed_is_as_old_as_its_stamp(wire: Wire) -> None:
     assert min(ages) == max(ages) == pytest.approx(0.4)
 
 
-def test_odometry_forward_and_turn_become_ticks(wire: Wire) -> None:
-    wire.odom(PlanePose())
-    wire.clock.time_s += 1.0
-    wire.odom(PlanePose(0.0, 0.1, math.pi / 2))
-    first, second = wheels_of(wire.receive())
-    assert (first.left_ticks, first.right_ticks, first.duration_s) == (0, 0, 0.0)
-    tick_m, half_m = SETTINGS.geometry.metres_per_tick, math.pi / 4 * SETTINGS.geometry.effective_track_m
-    forward_m = 0.1 * math.sin(math.pi / 4)
-    assert second.left_ticks * tick_m == pytest.approx(forward_m - half_m, abs=tick_m)
-    assert second.right_ticks * tick_m == pytest.approx(forward_m + half_m, abs=tick_m)
-    assert second.duration_s == pytest.approx(1.0)
-
-
-def test_odometry_driving_backwards_counts_negative(wire: Wire) -> None:
-    wire.odom(PlanePose(heading_rad=3.0))
-    wire.clock.time_s += 0.5
-    wire.odom(PlanePose(-0.05 * math.cos(3.0), -0.05 * math.sin(3.0), 3.0))
-    assert wheels_of(wire.receive())[1].left_ticks == pytest.approx(-0.05 / SETTINGS.geometry.metres_per_tick, abs=1)
-
-
-def test_odometry_small_steps_lose_no_ticks(wire: Wire) -> None:
-    wire.clock.time_s = 200.0
-    turned = 0
-    for step in range(201):
-        wire.odom(PlanePose(x_m=step * 0.000_1), 100.0 + step * 0.05)
-        turned += sum(report.left_ticks for report in wheels_of(wire.receive()))
-    assert turned == pytest.approx(0.02 / SETTINGS.geometry.metres_per_tick, abs=1)
-
-
-def test_odometry_jump_counts_no_ticks(wire: Wire) -> None:
-    wire.odom(PlanePose(), 10.0)
-    wire.odom(PlanePose(x_m=5.0), 10.05)
-    assert wheels_of(wire.receive())[1][1:] == (0, 0, 0.0)
-
-
 def test_odometry_repeated_or_without_number_is_junk(wire: Wire) -> None:
     wire.odom(PlanePose(), 10.0)
     wire.odom(PlanePose(x_m=0.1), 10.0)
     wire.odom(PlanePose(x_m=math.nan), 11.0)
     assert len(wheels_of(wire.receive())) == 1
     assert wire.link.junk == 2
-
-
-@pytest.mark.parametrize(
-    ("wanted", "twist"),
-    [
-        (WheelSpeeds(0.15, 0.15), (0.15, 0.0)),
-        (WheelSpeeds(-0.08, 0.08), (0.0, 1.0)),
-        (WheelSpeeds(0.072, 0.168), (0.12, 0.6)),
-        (WheelSpeeds(-0.08, -0.08), (-0.08, 0.0)),
-        (WheelSpeeds(0.0, 0.0), (0.0, 0.0)),
-    ],
-)
-def test_send_set_points_go_out_as_a_twist(wire: Wire, wanted: WheelSpeeds, twist: tuple[float, float]) -> None:
-    wire.link.send(wanted)
-    message = decode(wire.twists[-1], TwistStamped)
-    assert (message.twist.linear.x, message.twist.angular.z) == pytest.approx(twist)
-    assert wire.link.applied(wanted) == pytest.approx(wanted)
 
 
 def test_applied_speeds_are_never_above_the_given_ones(wire: Wire) -> None:
@@ -248,13 +176,6 @@ def test_drive_error_of_the_base_stops_and_names_it() -> None:
     assert told in rig.robot.health.alarm  # until a person has seen it
     rig.robot.release()
     assert rig.run(1.0).wheel_speeds == FORWARD
-
-
-def test_drive_error_of_another_node_is_none_of_the_base() -> None:
-    rig = MemoryRig()
-    rig.run(1.0)
-    rig.send("diagnostics", DiagnosticArray(Header(Time(1, 0), ""), [DiagnosticStatus(2, "camera", "dark", "", [])]))
-    assert rig.run(0.5).wheel_speeds == FORWARD
 
 
 def test_drive_lost_connection_latches_and_the_base_brakes() -> None:
