@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from kurt2rt.experiments.lockstep.drive_row import ExamVerdict
 from kurt2rt.experiments.navigation.tables import all_tables as navigation_tables
 from kurt2rt.experiments.paper.tables import paper_targets_table
-from kurt2rt.experiments.phases.steps import ASKS
+from kurt2rt.experiments.phases.steps import Step
 from kurt2rt.experiments.phases.tables import phases_targets_table, words_of_controls
 from kurt2rt.experiments.study.exam_tables import verdict_text
 from kurt2rt.experiments.study.targets import reasons_against_judging
@@ -61,6 +61,6 @@ def exams() -> Iterator[tuple[str, str]]:
 
 def controls() -> Iterator[tuple[str, str]]:
     """Yield the sentences on controls without effect."""
-    silent = [stage(ASKS, exam(progress=7.0), taught=teaching(asks=0)) for _ in range(2)]
-    for label, made in (("all equal", study(2)), ("no questions", study(2, asks_only=silent))):
+    silent = [stage(Step.ASKS, exam(progress=7.0), taught=teaching(asks=0)) for _ in range(2)]
+    for label, made in (("all equal", study(2)), ("no questions", study(2, asks=silent))):
         yield label, " ".join(words_of_controls(made))

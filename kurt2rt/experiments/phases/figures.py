@@ -12,21 +12,12 @@ from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.experiments.lockstep.drive_row import label_of
 from kurt2rt.experiments.lockstep.teacher_workload import SAID
 from kurt2rt.experiments.phases.results import MEASURES, PhasesStudy, exams_of, paired
-from kurt2rt.experiments.phases.steps import (
-    BRANCHES,
-    INTACT,
-    PATH,
-    PHASE_2,
-    PHASE_3,
-    PHASE_4,
-    PHASE_5,
-    TITLES,
-)
+from kurt2rt.experiments.phases.steps import BRANCHES, PATH, Step
 from kurt2rt.experiments.study.figures import SavedFigure, save
 from kurt2rt.experiments.study.intervals import collisions_in_10_min, wilson_interval
 
 _LOAD_COLOURS = {"lessons": "#1f6fb2", "corrections": "#d1495b", "rewards": "#2e8540", "appraisals": "#b8860b"}
-_TEACHING = (PHASE_2, PHASE_3, PHASE_4, PHASE_5)
+_TEACHING = (Step.PHASE_2, Step.PHASE_3, Step.PHASE_4, Step.PHASE_5)
 _AGREEMENT_EVERY_MIN = 1 / 6
 _WORLD_COLOURS = ("#1f6fb2", "#d1495b", "#2e8540", "#b8860b", "#6b4c9a")
 
@@ -68,7 +59,7 @@ def draw_figures(study: PhasesStudy, folder: Path) -> Iterator[SavedFigure]:
     )
 
 
-def _draw_stages(study: PhasesStudy, names: Sequence[str], path: Path) -> None:
+def _draw_stages(study: PhasesStudy, names: Sequence[Step], path: Path) -> None:
     """Draw success and collisions of each stage, a color for each world."""
     figure = Figure(figsize=(11.0, 1.6 + 0.55 * len(names)), layout="constrained")
     success, collisions = figure.subplots(1, 2, sharey=True)
@@ -84,7 +75,7 @@ def _draw_stages(study: PhasesStudy, names: Sequence[str], path: Path) -> None:
         _bar(success, at, each.passed / robots, wilson_interval(each.passed, robots), colour, label)
         _bar(collisions, at, rate.value, (rate.low, rate.high), colour, None)
         most = max(most, rate.value)
-    success.set_yticks(places, [TITLES[name] for name in names])
+    success.set_yticks(places, [name.label for name in names])
     success.set_xlim(-0.03, 1.03)
     success.set_xlabel("share of the robots that succeed")
     collisions.set_xlabel("collisions in 10 min")
@@ -122,7 +113,7 @@ def _draw_load(study: PhasesStudy, path: Path) -> None:
                 linewidth=1.8,
                 label=kind.replace("lessons", "answers") if name == _TEACHING[0] else None,
             )
-        title = "phases 1 and 2" if name == PHASE_2 else TITLES[name].split(",")[0]
+        title = "phases 1 and 2" if name == Step.PHASE_2 else name.label.split(",")[0]
         axes.annotate(title, (begins + lasts / 2, 1.0), xycoords=("data", "axes fraction"), ha="center", va="bottom")
         begins += lasts
         axes.axvline(begins, color="#999999", linewidth=0.8)
@@ -139,7 +130,7 @@ def _draw_agreement(study: PhasesStudy, path: Path) -> None:
     """Median and quartiles against time, with the bound of trust."""
     figure = Figure(figsize=(7.5, 4.4), layout="constrained")
     axes = figure.subplots()
-    curves = [each.agreement for each in study.taught(PHASE_4)]
+    curves = [each.agreement for each in study.taught(Step.PHASE_4)]
     shares = np.array([[np.nan if share is None else share for share in curve] for curve in curves], dtype=np.float64)
     times = _AGREEMENT_EVERY_MIN * np.arange(1, shares.shape[1] + 1)
     heard = ~np.isnan(shares).all(axis=0)
@@ -159,7 +150,7 @@ def _draw_agreement(study: PhasesStudy, path: Path) -> None:
 
 def _draw_intact(study: PhasesStudy, path: Path) -> None:
     """Each robot before and after, by each measure but success."""
-    pairs = paired(study.stages[PHASE_2], study.stages[INTACT])
+    pairs = paired(study.stages[Step.PHASE_2], study.stages[Step.INTACT])
     worlds = list(dict.fromkeys(each.world for each in pairs))
     shown = [measure for measure in MEASURES[1:] if any(each.measure == measure for each in pairs)]
     figure = Figure(figsize=(3.6 * len(shown), 4.2), layout="constrained")

@@ -9,15 +9,7 @@ from behaviors.metrics.task_metric import DISTANCE_ERROR
 from kurt2rt.core.phase_settings import AskedShare
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, label_of
 from kurt2rt.experiments.phases.controls import Judgement
-from kurt2rt.experiments.phases.steps import (
-    CORRUPTED,
-    CRITIC_ALONE,
-    INTACT,
-    LONG_RUN,
-    PHASE_2,
-    REWARDS,
-    phases_of,
-)
+from kurt2rt.experiments.phases.steps import Step, phases_of
 from kurt2rt.experiments.phases.study import JobOutcome, PhasesTask, StageOutcome, TeachingOutcome
 from kurt2rt.experiments.study.exam_tables import (
     Drives,
@@ -39,7 +31,7 @@ from kurt2rt.experiments.study.table import (
 from kurt2rt.experiments.study.targets import Verdict, needed_of, reasons_against_judging
 
 HOUR_S = 3600.0
-Stage = Group[str, StageOutcome]
+Stage = Group[Step, StageOutcome]
 """Robots at one stage, in the order of the seeds."""
 
 
@@ -48,12 +40,12 @@ class PhasesStudy:
     """Results of `kurt2rt study phases` by step and robot, from which tables and figures are made."""
 
     plan: StudyPlan[PhasesTask]
-    stages: dict[str, Stage]
+    stages: dict[Step, Stage]
     """Stages by the name of the step."""
     teachers: tuple[DriveRow, ...]
     """Drives of the teacher's own policy, of each robot one in each world."""
 
-    def taught(self, name: str) -> list[TeachingOutcome]:
+    def taught(self, name: Step) -> list[TeachingOutcome]:
         """Return the training runs of a step, of the robots that had one."""
         return [stage.teaching for stage in self.stages[name].rows if stage.teaching is not None]
 
@@ -73,7 +65,7 @@ def reasons_not_to_judge(plan: StudyPlan[PhasesTask]) -> Iterator[str]:
     yield from reasons_against_judging(plan.seeds)
 
 
-def exams_of(*stages: Stage) -> list[Drives[str]]:
+def exams_of(*stages: Stage) -> list[Drives[Step]]:
     """Return the exams of all robots at these stages, stage by stage and world by world."""
     return [
         each for stage in stages for each in by_world(stage.of, (exam for robot in stage.rows for exam in robot.exams))
@@ -192,10 +184,10 @@ def verdicts(study: PhasesStudy) -> Iterator[Verdict]:
     """
     phases = phases_of(study.plan.about.task)
     asked = phases.asked
-    corrupted, alone = study.stages[CORRUPTED], study.stages[CRITIC_ALONE]
-    yield from _repaired("repaired by phase 3", study.stages[REWARDS], asked.repaired_by_rewards)
+    corrupted, alone = study.stages[Step.CORRUPTED], study.stages[Step.CRITIC_ALONE]
+    yield from _repaired("repaired by phase 3", study.stages[Step.REWARDS], asked.repaired_by_rewards)
     if asked.repaired_by_rewards and phases.signals.most_blame:
-        most, limit = max(each.negative_rewards for each in study.taught(REWARDS)), phases.signals.most_blame
+        most, limit = max(each.negative_rewards for each in study.taught(Step.REWARDS)), phases.signals.most_blame
         yield Verdict("blame in phase 3, most of all robots", f"at most {limit}", str(most), most <= limit)
     yield from _repaired("repaired by the critic alone", alone, asked.repaired_by_critic)
     if asked.collisions_fall_by:
@@ -209,7 +201,7 @@ def verdicts(study: PhasesStudy) -> Iterator[Verdict]:
             fall.value >= asked.collisions_fall_by,
         )
     if asked.intact_not_worse:
-        for each in paired(study.stages[PHASE_2], study.stages[INTACT]):
+        for each in paired(study.stages[Step.PHASE_2], study.stages[Step.INTACT]):
             yield _not_worse(each, asked.not_worse_margin)
     if asked.interventions_below_per_hour:
         rate, most_h = interventions(study), asked.interventions_below_per_hour
@@ -219,13 +211,13 @@ def verdicts(study: PhasesStudy) -> Iterator[Verdict]:
 
 def interventions(study: PhasesStudy) -> Rate:
     """Return the interventions in an hour, of all robots in the long run."""
-    taught = study.taught(LONG_RUN)
+    taught = study.taught(Step.LONG_RUN)
     return rate_of([each.interventions for each in taught], [each.teaching_s / HOUR_S for each in taught])
 
 
 def robots_of_the_long_run(study: PhasesStudy) -> str:
     """Return the number of robots, their hours, and the most interventions of one robot."""
-    taught = study.taught(LONG_RUN)
+    taught = study.taught(Step.LONG_RUN)
     minutes = " or ".join(f"{each:g}" for each in sorted({each.teaching_s / 60.0 for each in taught}))
     return f"{len(taught)} robots of {minutes} min each, of which the worst had {max(t.interventions for t in taught)}"
 

@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
+from enum import StrEnum
+from typing import Literal, Self
 
 from config.settings import SettingsError
 from hal.robot_settings import RobotSettings
@@ -17,45 +18,58 @@ from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, SignalTimes, Si
 Critic = Literal["own", "taught", "shuffled"]
 """Critic before the step: the knowledge's own, the one of this robot's phase 4, or a shuffled one."""
 
-UNTAUGHT, PHASE_1, PHASE_2 = "untaught", "phase-1", "phase-2"
-PHASE_3, PHASE_4, PHASE_5, LONG_RUN = "phase-3", "phase-4", "phase-5", "long-run"
-CORRUPTED, ASKS, UNKNOWN_BAD = "corrupted", "asks-only", "unknown-is-bad"
-BLAME_BY_CHANCE, REWARDS = "blame-by-chance", "rewards"
-JUDGED, CRITIC_ALONE, SHUFFLED, INTACT = "critic-judged", "critic-alone", "critic-shuffled", "intact-autonomous"
+
+class Step(StrEnum):
+    """Step of one robot's training, as files name it, with its title in tables."""
+
+    label: str
+
+    def __new__(cls, value: str, label: str) -> Self:
+        """Return a step; `label`: its title."""
+        step = str.__new__(cls, value)
+        step._value_, step.label = value, label
+        return step
+
+    UNTAUGHT = "untaught", "untaught"
+    PHASE_1 = "phase-1", "phase 1, answers"
+    PHASE_2 = "phase-2", "phase 2, corrections"
+    PHASE_3 = "phase-3", "phase 3, rewards"
+    PHASE_4 = "phase-4", "phase 4, critic taught"
+    PHASE_5 = "phase-5", "phase 5, autonomous"
+    LONG_RUN = "long-run", "long run"
+    CORRUPTED = "corrupted", "corrupted, untouched"
+    ASKS = "asks-only", "asks only"
+    UNKNOWN_BAD = "unknown-is-bad", "asks, unknown is -1"
+    BLAME_BY_CHANCE = "blame-by-chance", "asks, -1 by chance"
+    REWARDS = "rewards", "asks and rewards (phase 3)"
+    JUDGED = "critic-judged", "critic judged"
+    CRITIC_ALONE = "critic-alone", "critic alone (phase 5)"
+    SHUFFLED = "critic-shuffled", "shuffled critic alone"
+    INTACT = "intact-autonomous", "intact set, critic alone"
+
 
 _QUICK_TEACHING_S, _QUICK_EXAM_S, _QUICK_STEP_S, _QUICK_ALONE_S = 40.0, 6.0, 10.0, 40.0
 _QUICK_SHARE = 0.2
 """Factor of the intervals in a quick run."""
 
-PATH = (UNTAUGHT, PHASE_1, PHASE_2, PHASE_3, PHASE_4, PHASE_5)
-BRANCHES = (CORRUPTED, ASKS, UNKNOWN_BAD, BLAME_BY_CHANCE, REWARDS, CRITIC_ALONE, SHUFFLED)
-
-TITLES = {
-    UNTAUGHT: "untaught",
-    PHASE_1: "phase 1, answers",
-    PHASE_2: "phase 2, corrections",
-    PHASE_3: "phase 3, rewards",
-    PHASE_4: "phase 4, critic taught",
-    PHASE_5: "phase 5, autonomous",
-    LONG_RUN: "long run",
-    CORRUPTED: "corrupted, untouched",
-    ASKS: "asks only",
-    UNKNOWN_BAD: "asks, unknown is -1",
-    BLAME_BY_CHANCE: "asks, -1 by chance",
-    REWARDS: "asks and rewards (phase 3)",
-    JUDGED: "critic judged",
-    CRITIC_ALONE: "critic alone (phase 5)",
-    SHUFFLED: "shuffled critic alone",
-    INTACT: "intact set, critic alone",
-}
+PATH = (Step.UNTAUGHT, Step.PHASE_1, Step.PHASE_2, Step.PHASE_3, Step.PHASE_4, Step.PHASE_5)
+BRANCHES = (
+    Step.CORRUPTED,
+    Step.ASKS,
+    Step.UNKNOWN_BAD,
+    Step.BLAME_BY_CHANCE,
+    Step.REWARDS,
+    Step.CRITIC_ALONE,
+    Step.SHUFFLED,
+)
 
 
 @dataclass(frozen=True, slots=True)
 class PhaseStep:
     """Knowledge that another step left, what is done to it, and where it is examined."""
 
-    name: str
-    after: str
+    name: Step
+    after: Step
     """The step that it goes on from."""
     corrupted: float
     """Share of its RLAs that get another action first."""
@@ -66,17 +80,17 @@ class PhaseStep:
     """Worlds of the exams."""
     mistakes: str = "repair"
     """Purpose of the wrong actions, which chooses them."""
-    blames_like: str = ""
-    """Step with the number of penalties for random ones; empty without random penalties."""
+    blames_like: Step | None = None
+    """Step with the number of penalties for random ones; None without random penalties."""
     judges_critic: bool = False
     """True if a drive without learning compares critic and judge."""
     aside: bool = False
     """True if only the critic is kept of the step, and knowledge and exams are those before it."""
 
     @property
-    def needs(self) -> tuple[str, ...]:
+    def needs(self) -> tuple[Step, ...]:
         """Names of the steps that have to be done before this step."""
-        critic = () if self.critic == "own" else (PHASE_4,)
+        critic = () if self.critic == "own" else (Step.PHASE_4,)
         return (self.after, *critic, *([self.blames_like] if self.blames_like else []))
 
 
@@ -166,11 +180,13 @@ def steps_of(task: TaskSettings) -> Iterator[PhaseStep]:
 def _path_steps(plans: _Plans) -> Iterator[PhaseStep]:
     phases, worlds = plans.phases, plans.task.exam.worlds
     rewards = plans.rewards(phases.reinforcement_s, "phase 3", "judge")
-    yield PhaseStep(PHASE_3, PHASE_2, 0.0, "own", rewards, phases.repair_worlds)
+    yield PhaseStep(Step.PHASE_3, Step.PHASE_2, 0.0, "own", rewards, phases.repair_worlds)
     critic, wrong = plans.appraisals(), phases.corrupted_share
-    yield PhaseStep(PHASE_4, PHASE_3, wrong, "own", critic, phases.repair_worlds, mistakes="critic", aside=True)
-    yield PhaseStep(PHASE_5, PHASE_4, 0.0, "own", plans.autonomous(phases.autonomy_s, "phase 5"), worlds)
-    yield PhaseStep(LONG_RUN, PHASE_5, 0.0, "own", plans.autonomous(phases.long_run_s, "long run"), ())
+    yield PhaseStep(
+        Step.PHASE_4, Step.PHASE_3, wrong, "own", critic, phases.repair_worlds, mistakes="critic", aside=True
+    )
+    yield PhaseStep(Step.PHASE_5, Step.PHASE_4, 0.0, "own", plans.autonomous(phases.autonomy_s, "phase 5"), worlds)
+    yield PhaseStep(Step.LONG_RUN, Step.PHASE_5, 0.0, "own", plans.autonomous(phases.long_run_s, "long run"), ())
 
 
 def _branch_steps(plans: _Plans) -> Iterator[PhaseStep]:
@@ -180,15 +196,15 @@ def _branch_steps(plans: _Plans) -> Iterator[PhaseStep]:
     chance = plans.rewards(phases.repair_s, "repair", "chance")
     unknown = plans.rewards(phases.repair_s, "repair", "unknown")
     alone = plans.autonomous(phases.repair_alone_s, "repair")
-    yield PhaseStep(CORRUPTED, PHASE_2, wrong, "own", None, worlds)
-    yield PhaseStep(ASKS, PHASE_2, wrong, "own", plans.asking(), worlds)
-    yield PhaseStep(UNKNOWN_BAD, PHASE_2, wrong, "own", unknown, worlds)
-    yield PhaseStep(REWARDS, PHASE_2, wrong, "own", judge, worlds)
-    yield PhaseStep(BLAME_BY_CHANCE, PHASE_2, wrong, "own", chance, worlds, blames_like=REWARDS)
-    yield PhaseStep(JUDGED, PHASE_2, wrong, "taught", None, (), judges_critic=True)
-    yield PhaseStep(CRITIC_ALONE, PHASE_2, wrong, "taught", alone, worlds)
-    yield PhaseStep(SHUFFLED, PHASE_2, wrong, "shuffled", alone, worlds)
-    yield PhaseStep(INTACT, PHASE_2, 0.0, "taught", alone, plans.task.exam.worlds)
+    yield PhaseStep(Step.CORRUPTED, Step.PHASE_2, wrong, "own", None, worlds)
+    yield PhaseStep(Step.ASKS, Step.PHASE_2, wrong, "own", plans.asking(), worlds)
+    yield PhaseStep(Step.UNKNOWN_BAD, Step.PHASE_2, wrong, "own", unknown, worlds)
+    yield PhaseStep(Step.REWARDS, Step.PHASE_2, wrong, "own", judge, worlds)
+    yield PhaseStep(Step.BLAME_BY_CHANCE, Step.PHASE_2, wrong, "own", chance, worlds, blames_like=Step.REWARDS)
+    yield PhaseStep(Step.JUDGED, Step.PHASE_2, wrong, "taught", None, (), judges_critic=True)
+    yield PhaseStep(Step.CRITIC_ALONE, Step.PHASE_2, wrong, "taught", alone, worlds)
+    yield PhaseStep(Step.SHUFFLED, Step.PHASE_2, wrong, "shuffled", alone, worlds)
+    yield PhaseStep(Step.INTACT, Step.PHASE_2, 0.0, "taught", alone, plans.task.exam.worlds)
 
 
 def shortened(task: TaskSettings, robot: RobotSettings) -> TaskSettings:

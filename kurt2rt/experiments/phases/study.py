@@ -28,17 +28,7 @@ from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
 from kurt2rt.experiments.phases.controls import Judgement, Scoring, corrupt, critic_lessons, shuffled
-from kurt2rt.experiments.phases.steps import (
-    PHASE_1,
-    PHASE_2,
-    PHASE_4,
-    TITLES,
-    UNTAUGHT,
-    PhaseStep,
-    phases_of,
-    shortened,
-    steps_of,
-)
+from kurt2rt.experiments.phases.steps import PhaseStep, Step, phases_of, shortened, steps_of
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
 from kurt2rt.experiments.study.results import Outcome, StudyError
@@ -83,7 +73,7 @@ class TeachingOutcome(Settings):
 class StageOutcome(Settings):
     """A robot's knowledge at one stage, how it came there, and how it drives with it."""
 
-    name: str
+    name: Step
     rlas: int
     appraisals: int
     """RLAs of its critic."""
@@ -133,7 +123,7 @@ def _teaching_outcome(lesson: TrainingResult, events: Sequence[TeachingEvent]) -
 
 
 def _stage_outcome(
-    name: str,
+    name: Step,
     system: RlaSystem,
     teaching: TeachingOutcome | None,
     exams: tuple[DriveRow, ...],
@@ -227,10 +217,10 @@ class FirstPhasesJob(PhasesJob):
             _stage_outcome(
                 name,
                 replay_events(self.task, self.robot, known),
-                _teaching_outcome(lesson, events) if name == PHASE_2 else None,
+                _teaching_outcome(lesson, events) if name == Step.PHASE_2 else None,
                 await self.examine(self.exam_of(known), teachers, report),
             )
-            for name, known in ((UNTAUGHT, []), (PHASE_1, answered), (PHASE_2, events))
+            for name, known in ((Step.UNTAUGHT, []), (Step.PHASE_1, answered), (Step.PHASE_2, events))
         ]
         return JobOutcome(made_of=self.made_of, seed=self.seed, stages=tuple(stages), teachers=teachers)
 
@@ -293,7 +283,7 @@ class StepJob(PhasesJob):
         """Copy the knowledge that the step continues."""
         shutil.copyfile(self._left_by(self.of.after), knowledge)
 
-    def _left_by(self, step: str) -> Path:
+    def _left_by(self, step: Step) -> Path:
         """Return the knowledge file of another step. Raises StudyError without the file."""
         stem, folder = f"{step}/{self.task.name}-{self.seed}", self.results.folder
         file = folder / f"knowledge/{stem}.knowledge"
@@ -327,7 +317,7 @@ class StepJob(PhasesJob):
             raise LessonLostError(f"{refused[0]}", where=self.name)
 
     def _critics(self) -> Iterator[TeachingEvent]:
-        taught = self._left_by(PHASE_4)
+        taught = self._left_by(Step.PHASE_4)
         if self.of.critic == "taught":
             yield from critic_lessons(read_lessons(taught, self.robot, self.task))
             return
@@ -386,10 +376,10 @@ def make_plan(
             seed=seed,
             made_of=made_of(None),
             name=f"phases 1 and 2, seed {seed}",
-            stem=f"{PHASE_2}/{task.name}-{seed}",
+            stem=f"{Step.PHASE_2}/{task.name}-{seed}",
             robot_time_s=task.teaching.duration_s + 3 * len(task.exam.worlds) * exam_s,
         )
-        of_robot: dict[str, FirstPhasesJob | StepJob] = {PHASE_2: first}
+        of_robot: dict[Step, FirstPhasesJob | StepJob] = {Step.PHASE_2: first}
         for name, step in steps.items():
             drives = 0 if step.aside else len(step.worlds) + step.judges_critic
             of_robot[name] = StepJob(
@@ -397,20 +387,20 @@ def make_plan(
                 task=task,
                 seed=seed,
                 made_of=made[name],
-                name=f"{TITLES[name]}, seed {seed}",
+                name=f"{name.label}, seed {seed}",
                 stem=f"{name}/{task.name}-{seed}",
                 robot_time_s=(step.plan.duration_s if step.plan else 0.0) + drives * exam_s,
                 wave=_depth(step, steps),
                 of=step,
                 before=of_robot[step.after],
                 first=first,
-                alike=of_robot.get(step.blames_like),
+                alike=of_robot[step.blames_like] if step.blames_like else None,
             )
         jobs += of_robot.values()
     return StudyPlan(PhasesTask(task, quick), tuple(seeds), tuple(jobs)).driven(engine, robot)
 
 
-def _way_to(step: PhaseStep | None, by_name: dict[str, PhaseStep]) -> Iterator[PhaseStep]:
+def _way_to(step: PhaseStep | None, by_name: dict[Step, PhaseStep]) -> Iterator[PhaseStep]:
     """Yield all steps that lead to a step, and the step itself."""
     if step is not None:
         for name in step.needs:
@@ -418,5 +408,5 @@ def _way_to(step: PhaseStep | None, by_name: dict[str, PhaseStep]) -> Iterator[P
         yield step
 
 
-def _depth(step: PhaseStep, by_name: dict[str, PhaseStep]) -> int:
-    return 1 + max(0 if name == PHASE_2 else _depth(by_name[name], by_name) for name in step.needs)
+def _depth(step: PhaseStep, by_name: dict[Step, PhaseStep]) -> int:
+    return 1 + max(0 if name == Step.PHASE_2 else _depth(by_name[name], by_name) for name in step.needs)

@@ -22,26 +22,7 @@ from kurt2rt.experiments.phases.results import (
     score_of,
     verdicts,
 )
-from kurt2rt.experiments.phases.steps import (
-    ASKS,
-    BLAME_BY_CHANCE,
-    BRANCHES,
-    CORRUPTED,
-    CRITIC_ALONE,
-    INTACT,
-    JUDGED,
-    LONG_RUN,
-    PATH,
-    PHASE_2,
-    PHASE_3,
-    PHASE_4,
-    PHASE_5,
-    REWARDS,
-    SHUFFLED,
-    TITLES,
-    UNKNOWN_BAD,
-    phases_of,
-)
+from kurt2rt.experiments.phases.steps import BRANCHES, PATH, Step, phases_of
 from kurt2rt.experiments.phases.study import PhasesTask
 from kurt2rt.experiments.study.exam_tables import (
     PROGRESS,
@@ -118,7 +99,7 @@ def all_tables(study: PhasesStudy, reasons: Sequence[str]) -> Iterator[Table]:
     taught_by = f"Taught by the scripted teacher {study.plan.about.task.teaching.profile.name}."
     yield _exam_table("Phase by phase", PATH, study, f"{taught_by} {SUCCESS} {_PHASE_4}")
     yield _teachers_table(study)
-    yield _workload_table("What the teacher had to do", (PHASE_2, PHASE_3, PHASE_4), study)
+    yield _workload_table("What the teacher had to do", (Step.PHASE_2, Step.PHASE_3, Step.PHASE_4), study)
     yield _critic_table(study)
     yield _judged_table(study)
     yield _exam_table(
@@ -131,20 +112,20 @@ def all_tables(study: PhasesStudy, reasons: Sequence[str]) -> Iterator[Table]:
         "Shuffled: the same appraisals with their opinions shuffled, trusted all the same. "
         + " ".join(words_of_controls(study)),
     )
-    yield _workload_table("What that took", (ASKS, UNKNOWN_BAD, BLAME_BY_CHANCE, REWARDS), study)
+    yield _workload_table("What that took", (Step.ASKS, Step.UNKNOWN_BAD, Step.BLAME_BY_CHANCE, Step.REWARDS), study)
     yield _autonomous_table(study)
     for title, before, after in (
-        ("What rewards add to answers alone", ASKS, REWARDS),
-        ("What judging adds to blame by chance", BLAME_BY_CHANCE, REWARDS),
-        ("What its opinions add to the shuffled critic", SHUFFLED, CRITIC_ALONE),
-        ("An intact set, before and after phase 5", PHASE_2, INTACT),
-        ("The set of phase 2, and after all phases", PHASE_2, PHASE_5),
+        ("What rewards add to answers alone", Step.ASKS, Step.REWARDS),
+        ("What judging adds to blame by chance", Step.BLAME_BY_CHANCE, Step.REWARDS),
+        ("What its opinions add to the shuffled critic", Step.SHUFFLED, Step.CRITIC_ALONE),
+        ("An intact set, before and after phase 5", Step.PHASE_2, Step.INTACT),
+        ("The set of phase 2, and after all phases", Step.PHASE_2, Step.PHASE_5),
     ):
         yield _paired_table(title, paired(study.stages[before], study.stages[after]))
     yield _long_run_table(study)
 
 
-def _exam_table(title: str, stages: Sequence[str], study: PhasesStudy, note: str) -> Table:
+def _exam_table(title: str, stages: Sequence[Step], study: PhasesStudy, note: str) -> Table:
     def of_stage(heading: str, name: str) -> Column:
         of = middle(heading, name)[1]
         return heading, lambda each: of(study.stages[each.of]) if each.is_first else ""
@@ -152,7 +133,7 @@ def _exam_table(title: str, stages: Sequence[str], study: PhasesStudy, note: str
     return table_of(
         title,
         exams_of(*(study.stages[name] for name in stages)),
-        ("stage", lambda each: TITLES[each.of] if each.is_first else ""),
+        ("stage", lambda each: each.of.label if each.is_first else ""),
         WORLD,
         of_stage("RLAs", "rlas"),
         ("success", lambda each: of_text(each.passed, len(each.rows))),
@@ -205,11 +186,11 @@ def _teachers_table(study: PhasesStudy) -> Table:
     )
 
 
-_STEP: Column = ("step", lambda stage: TITLES[stage.of])
+_STEP: Column = ("step", lambda stage: stage.of.label)
 _LASTS: Column = ("lasts, s", lambda stage: f"{stage.rows[0].teaching.teaching_s:g}")
 
 
-def _workload_table(title: str, steps: Sequence[str], study: PhasesStudy) -> Table:
+def _workload_table(title: str, steps: Sequence[Step], study: PhasesStudy) -> Table:
     def said(kind: str) -> Callable[[Any], str]:
         def cell(stage: Any) -> str:
             taught = [robot.teaching for robot in stage.rows]
@@ -236,19 +217,19 @@ def _workload_table(title: str, steps: Sequence[str], study: PhasesStudy) -> Tab
 
 
 def _critic_table(study: PhasesStudy) -> Table:
-    ends = [each.agreement[-1] for each in study.taught(PHASE_4) if each.agreement]
+    ends = [each.agreement[-1] for each in study.taught(Step.PHASE_4) if each.agreement]
     shares = [share for share in ends if share is not None]
 
     def of_phase_4(text: Callable[[Sequence[float]], str], without: str) -> Callable[[Stage], str]:
         # Other steps have no teacher to agree with: their agreement is that of phase 4, or made up.
-        return lambda stage: "" if stage.of != PHASE_4 else text(shares) if shares else without
+        return lambda stage: "" if stage.of != Step.PHASE_4 else text(shares) if shares else without
 
     def trusted(stage: Any) -> str:
         return of_text(sum(robot.teaching.share_trusted > 0 for robot in stage.rows), len(stage.rows))
 
     return table_of(
         "The critic",
-        [study.stages[name] for name in (PHASE_4, PHASE_5, CRITIC_ALONE, SHUFFLED, INTACT)],
+        [study.stages[name] for name in (Step.PHASE_4, Step.PHASE_5, Step.CRITIC_ALONE, Step.SHUFFLED, Step.INTACT)],
         _STEP,
         middle("appraisal RLAs", "appraisals"),
         ("agreement at its end", of_phase_4(lambda shares: f"{median(shares):.2f}", "too little heard")),
@@ -262,7 +243,7 @@ def _critic_table(study: PhasesStudy) -> Table:
 
 
 def _judged_table(study: PhasesStudy) -> Table:
-    robots = [stage.judgements for stage in study.stages[JUDGED].rows]
+    robots = [stage.judgements for stage in study.stages[Step.JUDGED].rows]
     scores = [score_of(each) for each in robots]
 
     def cells(words: str, together: float | None) -> tuple[str, str, str, str]:
@@ -289,7 +270,7 @@ def _autonomous_table(study: PhasesStudy) -> Table:
 
     return table_of(
         "While it learnt alone",
-        [study.stages[name] for name in (CRITIC_ALONE, SHUFFLED, INTACT, PHASE_5)],
+        [study.stages[name] for name in (Step.CRITIC_ALONE, Step.SHUFFLED, Step.INTACT, Step.PHASE_5)],
         _STEP,
         _LASTS,
         *rate_columns("collisions in 10 min", in_10_min("collisions")),
@@ -302,7 +283,7 @@ def _autonomous_table(study: PhasesStudy) -> Table:
 def _long_run_table(study: PhasesStudy) -> Table:
     return table_of(
         "Interventions in the long run after phase 5",
-        [Group(LONG_RUN, tuple(study.taught(LONG_RUN)))],
+        [Group(Step.LONG_RUN, tuple(study.taught(Step.LONG_RUN)))],
         ("hours", lambda each: f"{sum(taught.teaching_s for taught in each.rows) / HOUR_S:.1f}"),
         total("collisions", "collisions"),
         ("stuck", lambda each: sum(taught.rescues - taught.unknown_rescues for taught in each.rows)),
@@ -317,23 +298,23 @@ def _long_run_table(study: PhasesStudy) -> Table:
 def words_of_controls(study: PhasesStudy) -> Iterator[str]:
     """Yield sentences on controls without effect."""
     stages = study.stages
-    robots = len(stages[ASKS].rows)
-    if not any(each.asks for each in study.taught(ASKS)):
-        yield f"{TITLES[ASKS]}: no robot asked anything."
-    never = sum(each.negative_rewards == 0 for each in study.taught(UNKNOWN_BAD))
+    robots = len(stages[Step.ASKS].rows)
+    if not any(each.asks for each in study.taught(Step.ASKS)):
+        yield f"{Step.ASKS.label}: no robot asked anything."
+    never = sum(each.negative_rewards == 0 for each in study.taught(Step.UNKNOWN_BAD))
     if never:
-        yield f"{TITLES[UNKNOWN_BAD]}: {never} of {robots} robots never met the unknown, so no -1 came."
+        yield f"{Step.UNKNOWN_BAD.label}: {never} of {robots} robots never met the unknown, so no -1 came."
     for one, other in (
-        (ASKS, CORRUPTED),
-        (UNKNOWN_BAD, ASKS),
-        (BLAME_BY_CHANCE, ASKS),
-        (REWARDS, ASKS),
-        (CRITIC_ALONE, CORRUPTED),
-        (SHUFFLED, CORRUPTED),
+        (Step.ASKS, Step.CORRUPTED),
+        (Step.UNKNOWN_BAD, Step.ASKS),
+        (Step.BLAME_BY_CHANCE, Step.ASKS),
+        (Step.REWARDS, Step.ASKS),
+        (Step.CRITIC_ALONE, Step.CORRUPTED),
+        (Step.SHUFFLED, Step.CORRUPTED),
     ):
         same = sum(a.exams == b.exams for a, b in zip(stages[one].rows, stages[other].rows, strict=True))
         if same:
-            yield f"{TITLES[one]}: {same} of {robots} robots drive exactly as in '{TITLES[other]}'."
+            yield f"{one.label}: {same} of {robots} robots drive exactly as in '{other.label}'."
 
 
 def _settings_table(task: TaskSettings) -> Table:

@@ -7,12 +7,13 @@ from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
 from kurt2rt.experiments.phases.results import PhasesStudy, Stage
-from kurt2rt.experiments.phases.steps import CORRUPTED, JUDGED, PHASE_1, TITLES, UNTAUGHT
+from kurt2rt.experiments.phases.steps import Step
 from kurt2rt.experiments.phases.study import PhasesTask, StageOutcome, TeachingOutcome
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from tests.experiments.rows import FAILED, PASSED, row
 
 TASK = load_task("wall_following")
+UNTAUGHT = (Step.UNTAUGHT, Step.PHASE_1, Step.CORRUPTED, Step.JUDGED)
 
 
 def exam(world: str = "a", *, passed: bool = True, **more: Any) -> DriveRow:
@@ -41,7 +42,7 @@ def teaching(teaching_s: float = 120.0, *, blame: int = 0, **more: Any) -> Teach
     return TeachingOutcome.model_validate({**fields, **more})
 
 
-def stage(name: str, *exams: DriveRow, taught: TeachingOutcome | None = None) -> StageOutcome:
+def stage(name: Step, *exams: DriveRow, taught: TeachingOutcome | None = None) -> StageOutcome:
     return StageOutcome(
         name=name, rlas=60, appraisals=170, knowledge_hash="0" * 64, teaching=taught, exams=exams or (exam(),)
     )
@@ -53,13 +54,15 @@ def study(robots: int = 2, task: TaskSettings = TASK, **changed: Sequence[StageO
         name: Stage(
             name,
             tuple(
-                stage(name, taught=None if name in (UNTAUGHT, PHASE_1, CORRUPTED, JUDGED) else teaching())
+                stage(
+                    name,
+                    taught=None if name in (Step.UNTAUGHT, Step.PHASE_1, Step.CORRUPTED, Step.JUDGED) else teaching(),
+                )
                 for _ in range(robots)
             ),
         )
-        for name in TITLES
+        for name in Step
     }
-    named = {name.replace("_", "-"): tuple(each) for name, each in changed.items()}
-    stages |= {name: Stage(name, each) for name, each in named.items()}
+    stages |= {step: Stage(step, tuple(each)) for name, each in changed.items() for step in [Step[name.upper()]]}
     plan = StudyPlan(PhasesTask(task, quick=False), tuple(range(100, 100 + robots)), ())
     return PhasesStudy(plan, stages, tuple(exam(seed=seed) for seed in plan.seeds))

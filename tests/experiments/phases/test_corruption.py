@@ -11,7 +11,7 @@ from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.phases.controls import corrupt, critic_lessons, shuffled
-from kurt2rt.experiments.phases.steps import CRITIC_ALONE, PHASE_4, REWARDS, SHUFFLED, steps_of
+from kurt2rt.experiments.phases.steps import Step, steps_of
 
 PERIOD_S = 0.01
 
@@ -51,16 +51,16 @@ def test_the_share_that_was_asked_for_gets_another_action() -> None:
 def test_corrupt_differs_by_purpose() -> None:
     rlas, steps = system(*SET).rlas, {step.name: step for step in steps_of(load_task("wall_following"))}
 
-    def wrong_at(name: str, seed: int) -> set[tuple[int, str]]:
+    def wrong_at(name: Step, seed: int) -> set[tuple[int, str]]:
         step = steps[name]
         wrong = corrupt(rlas, tuple(primitive_speeds("basic")), step.corrupted, seed, step.mistakes)
         return {(each.rla_id, each.action) for each in wrong}
 
     for seed in range(20):
-        shown, examined = wrong_at(PHASE_4, seed), wrong_at(CRITIC_ALONE, seed)
+        shown, examined = wrong_at(Step.PHASE_4, seed), wrong_at(Step.CRITIC_ALONE, seed)
         assert len(shown) == len(examined) == 9
         assert len(shown & examined) <= 1  # what little is alike is so by chance
-        assert examined == wrong_at(SHUFFLED, seed) == wrong_at(REWARDS, seed)
+        assert examined == wrong_at(Step.SHUFFLED, seed) == wrong_at(Step.REWARDS, seed)
 
 
 def test_wrong_actions_are_motor_primitives_of_the_repertoire() -> None:

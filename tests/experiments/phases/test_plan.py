@@ -7,7 +7,7 @@ import pytest
 from hal.robot_settings import load_robot
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.phases.steps import BLAME_BY_CHANCE, CRITIC_ALONE, LONG_RUN, PHASE_2, PHASE_4, PHASE_5, REWARDS
+from kurt2rt.experiments.phases.steps import Step
 from kurt2rt.experiments.phases.study import JobOutcome, PhasesTask, StepJob, make_plan
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob
 from kurt2rt.experiments.study.results import Results
@@ -34,9 +34,15 @@ def with_phases(**changed: float) -> TaskSettings:
 
 def test_waves_need_only_the_waves_before() -> None:
     waves = [{step_of(job) for job in wave} for wave in planned().waves]
-    assert waves[0] == {PHASE_2}
+    assert waves[0] == {Step.PHASE_2}
     place = {step: number for number, wave in enumerate(waves) for step in wave}
-    assert place[REWARDS] < place[PHASE_4] < place[CRITIC_ALONE] == place[PHASE_5] < place[LONG_RUN]
+    assert (
+        place[Step.REWARDS]
+        < place[Step.PHASE_4]
+        < place[Step.CRITIC_ALONE]
+        == place[Step.PHASE_5]
+        < place[Step.LONG_RUN]
+    )
     assert all(len(wave) % 2 == 0 for wave in planned().waves)  # as many of each seed
     jobs = planned().jobs
     assert len({job.file for job in jobs}) == len(jobs) == 2 * 14
@@ -44,12 +50,12 @@ def test_waves_need_only_the_waves_before() -> None:
 
 def test_random_penalties_equal_those_of_the_rewards(tmp_path: Path) -> None:
     results, jobs = Results(tmp_path), planned(folder=tmp_path).of(StepJob)
-    rewards = [job for job in jobs if job.of.name == REWARDS]
+    rewards = [job for job in jobs if job.of.name == Step.REWARDS]
     for job, blame in zip(rewards, (37, 5), strict=True):
         (tmp_path / job.file).parent.mkdir(parents=True, exist_ok=True)
-        stages = (stage(REWARDS, taught=teaching(blame=blame)),)
+        stages = (stage(Step.REWARDS, taught=teaching(blame=blame)),)
         results.write(job, JobOutcome(made_of=job.made_of, seed=job.seed, stages=stages))
-    told = [job.plan() for job in jobs if job.of.name == BLAME_BY_CHANCE]
+    told = [job.plan() for job in jobs if job.of.name == Step.BLAME_BY_CHANCE]
     assert [each.blame_by_chance for each in told if each] == [37, 5]
 
 
@@ -57,7 +63,7 @@ def test_changed_step_changes_following_steps_only() -> None:
     before = {job.file: job.made_of for job in planned().jobs}
     after = {job.file: job.made_of for job in planned(with_phases(autonomy_s=77.0)).jobs}
     changed = {Path(file).parent.name for file in before if before[file] != after[file]}
-    assert changed == {PHASE_5, LONG_RUN}
+    assert changed == {Step.PHASE_5, Step.LONG_RUN}
 
 
 @pytest.mark.parametrize("robot", ["school", "turtlebot"])

@@ -11,16 +11,7 @@ from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated, Teach
 from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.phases.results import PhasesStudy, read_study
-from kurt2rt.experiments.phases.steps import (
-    CORRUPTED,
-    CRITIC_ALONE,
-    JUDGED,
-    LONG_RUN,
-    PHASE_3,
-    PHASE_4,
-    SHUFFLED,
-    TITLES,
-)
+from kurt2rt.experiments.phases.steps import Step
 from kurt2rt.experiments.phases.study import PhasesTask, make_plan
 from kurt2rt.experiments.phases.tables import tell
 from kurt2rt.experiments.study.pool import PoolProgress
@@ -77,27 +68,27 @@ def lessons(tiny: Tiny, step: str) -> list[TeachingEvent]:
 
 
 def test_phases_run_stores_stages_and_knowledge(tiny: Tiny) -> None:
-    assert set(tiny.study.stages) == set(TITLES)
+    assert set(tiny.study.stages) == set(Step)
     assert all(job.knowledge.is_file() for job in tiny.plan.jobs)
-    (long_run,) = tiny.study.stages[LONG_RUN].rows
+    (long_run,) = tiny.study.stages[Step.LONG_RUN].rows
     assert long_run.exams == ()
 
 
 def test_the_critic_of_phase_4_goes_along_to_the_branches(tiny: Tiny) -> None:
-    (taught,) = tiny.study.stages[PHASE_4].rows
+    (taught,) = tiny.study.stages[Step.PHASE_4].rows
     assert taught.appraisals > 0
     assert taught.teaching is not None
     assert sum(minute.appraisals for minute in taught.teaching.workload) > 0
-    for step in (CRITIC_ALONE, SHUFFLED):
+    for step in (Step.CRITIC_ALONE, Step.SHUFFLED):
         (branch,) = tiny.study.stages[step].rows
         assert branch.appraisals == taught.appraisals
         assert any(isinstance(event, RlaCreated) and event.rla.level == CRITIC for event in lessons(tiny, step))
 
 
 def test_phase_4_changes_the_critic_alone(tiny: Tiny) -> None:
-    (before,), (after,) = tiny.study.stages[PHASE_3].rows, tiny.study.stages[PHASE_4].rows
+    (before,), (after,) = tiny.study.stages[Step.PHASE_3].rows, tiny.study.stages[Step.PHASE_4].rows
     assert (after.rlas, after.exams) == (before.rlas, before.exams)
-    brought = lessons(tiny, PHASE_4)[len(lessons(tiny, PHASE_3)) :]
+    brought = lessons(tiny, Step.PHASE_4)[len(lessons(tiny, Step.PHASE_3)) :]
     assert brought
     made = [event.rla for event in brought if isinstance(event, RlaCreated)]
     assert {rla.level for rla in made} == {CRITIC}
@@ -105,7 +96,7 @@ def test_phase_4_changes_the_critic_alone(tiny: Tiny) -> None:
 
 
 def test_interrupted_run_completes_to_equal_results(tiny: Tiny, tmp_path: Path) -> None:
-    left_out = {file_of(step) for step in (CORRUPTED, LONG_RUN)}
+    left_out = {file_of(step) for step in (Step.CORRUPTED, Step.LONG_RUN)}
     for path in tiny.folder.rglob("*-100.*"):
         name = path.relative_to(tiny.folder)
         if str(name) not in left_out:
@@ -113,23 +104,23 @@ def test_interrupted_run_completes_to_equal_results(tiny: Tiny, tmp_path: Path) 
             (tmp_path / name).write_bytes(path.read_bytes())
     seen: list[PoolProgress] = []
     plan = carry_out(tiny_plan(tmp_path), tmp_path, seen.append)
-    titles = {f"{TITLES[step]}, seed 100" for step in (CORRUPTED, LONG_RUN)}
+    titles = {f"{step.label}, seed 100" for step in (Step.CORRUPTED, Step.LONG_RUN)}
     assert {name for progress in seen for name in progress.running} == titles
     assert seen[-1].done_s == sum(job.robot_time_s for job in plan.jobs if job.file in left_out)
     assert read_study(plan).stages == tiny.study.stages
 
 
 def test_the_critic_is_judged_where_nothing_is_taught(tiny: Tiny) -> None:
-    (judged,) = tiny.study.stages[JUDGED].rows
+    (judged,) = tiny.study.stages[Step.JUDGED].rows
     assert judged.teaching is None
     assert judged.exams == ()
-    assert judged.rlas == tiny.study.stages[CORRUPTED].rows[0].rlas
+    assert judged.rlas == tiny.study.stages[Step.CORRUPTED].rows[0].rlas
     assert 0 < sum(each.ticks for each in judged.judgements) <= 100
 
 
 def test_missing_knowledge_and_results_are_named(tmp_path: Path) -> None:
     plan = tiny_plan(tmp_path)
-    (job,) = [job for job in plan.jobs if job.file == file_of(CORRUPTED)]
+    (job,) = [job for job in plan.jobs if job.file == file_of(Step.CORRUPTED)]
     with pytest.raises(StudyError, match=r"phase-2/\S+\.knowledge .*\S+100\.json "):
         job.run(lambda _: None)
     with pytest.raises(StudyError):

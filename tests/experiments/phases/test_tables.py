@@ -8,18 +8,7 @@ import pytest
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.phases.controls import Judgement
 from kurt2rt.experiments.phases.results import Stage, interventions, paired, score_of, verdicts
-from kurt2rt.experiments.phases.steps import (
-    ASKS,
-    CORRUPTED,
-    CRITIC_ALONE,
-    INTACT,
-    LONG_RUN,
-    PATH,
-    PHASE_2,
-    REWARDS,
-    TITLES,
-    UNKNOWN_BAD,
-)
+from kurt2rt.experiments.phases.steps import PATH, Step
 from kurt2rt.experiments.phases.tables import all_tables, words_of_controls
 from kurt2rt.experiments.study.targets import Verdict
 from tests.experiments.phases.outcomes import TASK, exam, stage, study, teaching
@@ -27,10 +16,12 @@ from tests.experiments.rows import cells, titled
 
 
 def test_robots_are_compared_with_themselves_world_by_world() -> None:
-    before = [stage("x", exam("a", progress=float(n)), exam("c", collisions=2, passed=False)) for n in range(10)]
-    after = [stage("y", exam("c"), exam("a", progress=n + 1.0)) for n in range(10)]
-    same = Stage("x", tuple(before))
-    found = {(each.world, each.measure.name): each for each in paired(same, Stage("y", tuple(after)))}
+    before = [
+        stage(Step.PHASE_2, exam("a", progress=float(n)), exam("c", collisions=2, passed=False)) for n in range(10)
+    ]
+    after = [stage(Step.INTACT, exam("c"), exam("a", progress=n + 1.0)) for n in range(10)]
+    same = Stage(Step.PHASE_2, tuple(before))
+    found = {(each.world, each.measure.name): each for each in paired(same, Stage(Step.INTACT, tuple(after)))}
     progress = found["a", "progress"]
     assert (progress.before, progress.after) == (4.5, 5.5)
     assert progress.difference == (1.0, 1.0, 1.0)  # robots differ by 10, and the change is the same in all
@@ -50,10 +41,10 @@ def test_score_of_measures_precision_and_recall() -> None:
 
 
 def test_every_stage_has_a_row_for_each_world() -> None:
-    robots = [stage(PHASE_2, exam(), exam("c", passed=False, collisions=3), taught=teaching()) for _ in range(2)]
+    robots = [stage(Step.PHASE_2, exam(), exam("c", passed=False, collisions=3), taught=teaching()) for _ in range(2)]
     table = titled(all_tables(study(phase_2=robots), []), "Phase by phase")
     named = [row[0] for row in table.rows if row[0]]
-    assert named == [TITLES[name] for name in PATH]
+    assert named == [name.label for name in PATH]
     second = cells(table, len(PATH) - 4 + 1)  # the row below phase 2 in A
     assert (second["stage"], second["world"], second["success"]) == ("", "C", "0 of 2")
     assert second["collisions in 10 min"] == "6.00"
@@ -68,13 +59,15 @@ def test_teachers_table_names_failed_seeds() -> None:
 
 
 def test_a_robot_that_was_stuck_once_or_more_counts_once() -> None:
-    robots = [stage(PHASE_2, exam(rescues=rescues), taught=teaching()) for rescues in (0, 1, 4)]
+    robots = [stage(Step.PHASE_2, exam(rescues=rescues), taught=teaching()) for rescues in (0, 1, 4)]
     found = cells(titled(all_tables(study(3, phase_2=robots), []), "Phase by phase"), 2)
     assert (found["stuck"], found["success"]) == ("2", "3 of 3")
 
 
 def test_why_somebody_had_to_come_is_told_apart() -> None:
-    robots = [stage(LONG_RUN, taught=teaching(7200.0, collisions=1, rescues=3, unknown_rescues=2)) for _ in range(2)]
+    robots = [
+        stage(Step.LONG_RUN, taught=teaching(7200.0, collisions=1, rescues=3, unknown_rescues=2)) for _ in range(2)
+    ]
     row = cells(titled(all_tables(study(long_run=robots), []), "Interventions"))
     assert (row["hours"], row["collisions"], row["stuck"], row["unknown for long"]) == ("4.0", "2", "2", "4")
     assert row["an hour"] == "2.00"
@@ -82,13 +75,15 @@ def test_why_somebody_had_to_come_is_told_apart() -> None:
 
 def test_a_control_that_equals_another_is_said_to() -> None:
     words = list(words_of_controls(study(2)))
-    assert any(each.startswith(f"{TITLES[UNKNOWN_BAD]}: 2 of 2 ") for each in words)
-    equal = [each for each in words if each.startswith(f"{TITLES[ASKS]}: ")]
+    assert any(each.startswith(f"{Step.UNKNOWN_BAD.label}: 2 of 2 ") for each in words)
+    equal = [each for each in words if each.startswith(f"{Step.ASKS.label}: ")]
     assert len(equal) == 1
-    assert TITLES[CORRUPTED] in equal[0]
-    silent = [stage(ASKS, exam(progress=7.0), taught=teaching(asks=0)) for _ in range(2)]
-    (said,) = (each for each in words_of_controls(study(2, asks_only=silent)) if each.startswith(f"{TITLES[ASKS]}: "))
-    assert TITLES[CORRUPTED] not in said
+    assert Step.CORRUPTED.label in equal[0]
+    silent = [stage(Step.ASKS, exam(progress=7.0), taught=teaching(asks=0)) for _ in range(2)]
+    (said,) = (
+        each for each in words_of_controls(study(2, asks_only=silent)) if each.startswith(f"{Step.ASKS.label}: ")
+    )
+    assert Step.CORRUPTED.label not in said
 
 
 def test_a_critic_of_which_too_little_was_heard_says_so() -> None:
@@ -96,12 +91,12 @@ def test_a_critic_of_which_too_little_was_heard_says_so() -> None:
     row = cells(table, 0)
     assert (row["agreement at its end"], row["trusted"], row["undone"]) == ("0.90", "2 of 2", "1")
     assert [bool(each[2]) for each in table.rows] == [True, *[False] * 4]  # of phase 4 alone
-    silent = study(phase_4=[stage("phase-4", taught=teaching(agreement=(None, None))) for _ in range(2)])
+    silent = study(phase_4=[stage(Step.PHASE_4, taught=teaching(agreement=(None, None))) for _ in range(2)])
     assert not re.search(r"\d", cells(titled(all_tables(silent, []), "The critic"))["agreement at its end"])
 
 
 def test_the_load_is_told_in_all_and_in_a_minute() -> None:
-    table = titled(all_tables(study(1, rewards=[stage(REWARDS, taught=teaching(blame=30))]), []), "What that took")
+    table = titled(all_tables(study(1, rewards=[stage(Step.REWARDS, taught=teaching(blame=30))]), []), "What that took")
     row = cells(table, 3)
     assert (row["lasts, s"], row["answers"], row["corrections"]) == ("120", "4 (2.0)", "6 (3.0)")
     assert (row["rewards"], row["-1"], row["withdrawn"]) == ("30 (15.0)", "30", "3")
@@ -115,7 +110,7 @@ def found(**changed: object) -> dict[str, Verdict]:
 @pytest.mark.parametrize(("wrong_in_a", "wrong_in_c", "result"), [(1, 2, "met"), (2, 3, "MISSED")])
 def test_a_repair_needs_as_many_robots_as_the_share_says(wrong_in_a: int, wrong_in_c: int, result: str) -> None:
     robots = [
-        stage(REWARDS, exam(passed=n >= wrong_in_a), exam("c", passed=n >= wrong_in_c), taught=teaching())
+        stage(Step.REWARDS, exam(passed=n >= wrong_in_a), exam("c", passed=n >= wrong_in_c), taught=teaching())
         for n in range(20)
     ]
     repaired = [found(rewards=robots)[f"repaired by phase 3, {world}"] for world in "AC"]
@@ -125,15 +120,15 @@ def test_a_repair_needs_as_many_robots_as_the_share_says(wrong_in_a: int, wrong_
 
 @pytest.mark.parametrize(("most", "result"), [(100, "met"), (101, "MISSED")])
 def test_the_robot_that_took_most_blame_counts(most: int, result: str) -> None:
-    robots = [stage(REWARDS, taught=teaching(blame=most if n == 7 else 1)) for n in range(20)]
+    robots = [stage(Step.REWARDS, taught=teaching(blame=most if n == 7 else 1)) for n in range(20)]
     verdict = found(rewards=robots)["blame in phase 3, most of all robots"]
     assert (verdict.came, verdict.result) == (str(most), result)
 
 
 @pytest.mark.parametrize(("left", "result"), [(2, "met"), (3, "MISSED")])
 def test_collisions_fall_by_those_that_are_no_more(left: int, result: str) -> None:
-    before = [stage(CORRUPTED, exam(collisions=1)) for _ in range(20)]
-    after = [stage(CRITIC_ALONE, exam(collisions=int(n < left)), taught=teaching()) for n in range(20)]
+    before = [stage(Step.CORRUPTED, exam(collisions=1)) for _ in range(20)]
+    after = [stage(Step.CRITIC_ALONE, exam(collisions=int(n < left)), taught=teaching()) for n in range(20)]
     verdict = found(corrupted=before, critic_alone=after)["collisions fall by the critic alone"]
     assert verdict.came.startswith(f"by {1 - left / 20:.0%} (")
     assert verdict.came.endswith(f", 2.00 to {left / 10:.2f} in 10 min")
@@ -142,8 +137,8 @@ def test_collisions_fall_by_those_that_are_no_more(left: int, result: str) -> No
 
 def intact(*after: DriveRow) -> dict[str, Verdict]:
     """Return the verdicts in world A, by measure, on 20 robots that were clean and alike before."""
-    before = [stage(PHASE_2, taught=teaching()) for _ in range(20)]
-    robots = [stage(INTACT, each, taught=teaching()) for each in after]
+    before = [stage(Step.PHASE_2, taught=teaching()) for _ in range(20)]
+    robots = [stage(Step.INTACT, each, taught=teaching()) for each in after]
     start = "an intact set in phase 5, A: "
     told = found(phase_2=before, intact_autonomous=robots)
     return {what.removeprefix(start): each for what, each in told.items() if what.startswith(start)}
@@ -171,8 +166,8 @@ def test_intact_measure_may_be_worse_by_the_margin() -> None:
 
 def test_intervention_counts_each_cause_that_needs_a_person() -> None:
     robots = [
-        stage(LONG_RUN, taught=teaching(1800.0, collisions=1, rescues=2, unknown_rescues=1)),
-        stage(LONG_RUN, taught=teaching(1800.0)),
+        stage(Step.LONG_RUN, taught=teaching(1800.0, collisions=1, rescues=2, unknown_rescues=1)),
+        stage(Step.LONG_RUN, taught=teaching(1800.0)),
     ]
     told = study(2, long_run=robots)
     assert interventions(told).value == 3.0
