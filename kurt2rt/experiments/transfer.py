@@ -218,17 +218,9 @@ def make_plan(
     *,
     engine: EngineRequest = EngineRequest.CAN,
 ) -> StudyPlan[Transfer]:
-    """Check task and worlds, and return the jobs.
+    """Check task and worlds, and return the jobs: each seed's robot at home, and in each new world on the CAN bus.
 
-    Args:
-        task: to teach, in its own world and in the new ones.
-        new: new worlds.
-        seeds: one robot each.
-        parts: factory, robot and results of the jobs.
-        engine: requested for lessons and exams; lessons in new worlds are given on the CAN bus.
-
-    Raises:
-        config.settings.SettingsError: the task and a world do not fit, or a new world is that of home.
+    Raises config.settings.SettingsError if the task and a world do not fit, or a new world is that of home.
     """
     home, seconds = task.teaching.world, new.seconds or task.teaching.duration_s
     worlds = [world_of(place, seed) for place in new.places for seed in seeds]

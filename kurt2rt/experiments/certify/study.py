@@ -129,17 +129,10 @@ class Certified(NamedTuple):
 
 
 def make_plan(task: TaskSettings, knowledge: Path, extent: Extent, parts: JobParts) -> StudyPlan[Certified]:
-    """Check knowledge, task and worlds, and return the jobs, the witnesses first: if one differs, all are refused.
+    """Check knowledge, task and worlds, and return the jobs; a witness that differs refuses all of them.
 
-    Args:
-        task: that the robot was taught.
-        knowledge: file with its lessons.
-        extent: number and worlds of the runs.
-        parts: factory, robot and results of the jobs.
-
-    Raises:
-        KnowledgeError: the knowledge file cannot be read.
-        config.settings.SettingsError: the knowledge holds no lesson, or task and worlds do not fit.
+    Raises KnowledgeError, and config.settings.SettingsError if the knowledge holds no lesson, or task and worlds do not
+    fit.
     """
     lessons = read_lessons(knowledge, parts["robot"], task)
     if not lessons:

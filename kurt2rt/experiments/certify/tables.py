@@ -232,16 +232,9 @@ def tell(
 ) -> Told:
     """Write pictures and report into the folder of the results; return the tables.
 
-    Args:
-        plan: of the study, whose jobs are done.
-        worst: runs to show.
-        again: jobs that drove them again for their pictures.
-        words: options by which `kurt2rt exam` drives a run as these were driven.
-        command: typed words of the study, without those that belong to the machine alone.
-
-    Raises:
-        BatchDiffersError: a run had another outcome when it was driven again.
-        StudyError, OSError.
+    `worst`: runs to show; `again`: jobs that drove them again for their pictures. `words`: options by which `kurt2rt
+    exam` drives a run so. `command`: typed words of the study, without those that belong to the machine alone. Raises
+    BatchDiffersError if a run had another outcome when it was driven again, StudyError, OSError.
     """
     (task, knowledge, _, runs), path = plan.about, plan.results.folder / "report.html"
     broken = {run.number: run.broken for run in runs}

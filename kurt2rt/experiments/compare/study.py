@@ -183,19 +183,10 @@ def make_plan(
     *,
     engine: EngineRequest = EngineRequest.CAN,
 ) -> StudyPlan[Compared]:
-    """Check tasks and worlds, and return the jobs.
+    """Check tasks and worlds, and return the jobs, a robot for each seed, task and pupil.
 
-    Args:
-        tasks: to teach, with their teachers.
-        pupils: to compare; the RLA system as shipped is added, because all others are compared with it.
-        seeds: one robot each.
-        after: numbers of presses after which the robots are examined, ascending.
-        parts: factory, robot and results of the jobs.
-        engine: requested for lessons and exams.
-
-    Raises:
-        config.settings.SettingsError: a task and a world do not fit.
-        NoLearnerError: there is no such learner.
+    The RLA system as shipped is added to `pupils`, because all others are compared with it. `after`: numbers of presses
+    after which the robots are examined, ascending. Raises config.settings.SettingsError, NoLearnerError.
     """
     about = Compared(tuple(tasks), tuple(after))
     fingerprints = Fingerprints(parts["factory"], parts["robot"])

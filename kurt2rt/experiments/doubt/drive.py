@@ -66,19 +66,10 @@ async def drive(
     setup: DoubtSetup,
     on_progress: Callable[[float], None],
 ) -> DriveLog:
-    """Drive in the setup's world and return the log; `on_progress` gets the simulated seconds once a second.
+    """Drive in the setup's world with the lessons `events` and return the log.
 
-    Args:
-        factory: opens the simulation.
-        settings: of the robot.
-        task: that the robot was taught.
-        events: its lessons.
-        setup: world, seed and duration.
-        on_progress: callback.
-
-    Raises:
-        config.settings.SettingsError: task and world do not fit, or the task sets no doubt.
-        UnknownActionError, UnknownBehaviourError: the lessons name an action or behaviour that the task lacks.
+    `on_progress` gets the simulated seconds once a second. Raises config.settings.SettingsError if task and world do
+    not fit, or the task sets no doubt.
     """
     task = with_doubt(task, setup.response)
     with closing(factory.open(setup.world, setup.seed, "doubt")) as simulation:

@@ -61,11 +61,9 @@ class DoubtDrives(NamedTuple):
 
 
 def make_plan(about: DoubtDrives, seeds: Sequence[int], taught: Path, parts: JobParts) -> StudyPlan[DoubtDrives]:
-    """Check task and worlds, and return the jobs. `taught`: folder with one knowledge file per seed.
+    """Check task and worlds, and return the jobs; `taught`: folder with one knowledge file per seed.
 
-    Raises:
-        KnowledgeError: a knowledge file cannot be read.
-        config.settings.SettingsError: the task sets no doubt, or does not fit a world.
+    Raises KnowledgeError, and config.settings.SettingsError if the task sets no doubt, or does not fit a world.
     """
     task = with_doubt(about.task, DoubtResponse.TELLS)
     require_places(parts["factory"], task, (world_of(world, seed) for world in about.worlds for seed in seeds))

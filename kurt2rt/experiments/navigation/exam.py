@@ -50,13 +50,7 @@ def choose_goals(
 ) -> tuple[GoalChosen, ...]:
     """Return successive goals, the first from `start`; fewer than required if there are none.
 
-    Args:
-        town: streets of the world.
-        named: street of each named place.
-        led: streets of the tour; None before each repositioning.
-        start: street of the robot.
-        settings: number of goals, and limits.
-        chance: source of the choice.
+    `named`: street of each named place. `led`: streets of the tour; None before each repositioning.
     """
     chosen: list[GoalChosen] = []
     here = start

@@ -82,19 +82,9 @@ async def guided_tour(
 ) -> TourResult:
     """Lead the robot for the task's whole teaching time; its start pose is its home.
 
-    The basic level is answered and corrected meanwhile, as in its own training run.
-
-    Args:
-        simulation: that the robot drives in.
-        settings: of the robot.
-        task: with errands.
-        training: destination of the lessons, and the knowledge to continue from.
-        seed: random choices of guide and teacher.
-        on_progress: called once a second with the simulated seconds.
-
-    Raises:
-        LessonLostError: the robot refused a command.
-        config.settings.SettingsError: the task has no goals, or the world no streets.
+    The basic level is answered and corrected meanwhile, as in its own training run. `training`: destination of the
+    lessons, and the knowledge to continue from. `seed`: of guide and teacher. `on_progress`: gets the simulated seconds
+    once a second. Raises LessonLostError if the robot refused a command, and SettingsError for a task without goals.
     """
     navigation_settings(task)
     runtime = build_training_runtime(simulation, settings, task, training)

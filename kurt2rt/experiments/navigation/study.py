@@ -109,18 +109,10 @@ def make_plan(
     *,
     basic_folder: Path | None = None,
 ) -> StudyPlan[TaskSettings]:
-    """Check task and worlds, and return the jobs.
+    """Check task and worlds, and return the jobs, a robot for each seed.
 
-    Args:
-        task: with errands.
-        seeds: one robot each.
-        parts: factory, robot and results of the jobs.
-        basic_folder: files of robots that were taught the streets; None: the streets are taught first.
-
-    Raises:
-        config.settings.SettingsError: a task and a world do not fit.
-        StudyError: a knowledge file is missing.
-        KnowledgeError: a knowledge file cannot be read.
+    `basic_folder`: files of robots that were taught the streets; None: the streets are taught first. Raises
+    config.settings.SettingsError, StudyError for a missing file, KnowledgeError.
     """
     basic = basic_task_of(task)
     worlds = (task.teaching.world, *task.exam.worlds[:1])

@@ -75,20 +75,11 @@ def make_plan(
     tasks: Sequence[str] = (),
     engine: EngineRequest = EngineRequest.CAN,
 ) -> StudyPlan[PaperExtent]:
-    """Check every task and world, and return the jobs.
+    """Check every task and world, and return the jobs, a robot for each seed.
 
-    Args:
-        paper: settings of the study.
-        extent: limits of tasks, worlds and times.
-        seeds: one robot each.
-        readings: readings of the paper to study.
-        parts: factory, robot and results of the jobs.
-        tasks: names or paths; empty: all. A task without an experiment in `paper` has no targets.
-        engine: requested for lessons and exams.
-
-    Raises:
-        config.settings.SettingsError: a task and a world do not fit.
-        StudyError: two tasks have one name, or a target has no exam.
+    `tasks`: names or paths; empty: all. A task without an experiment in `paper` has no targets. Raises
+    config.settings.SettingsError if a task and a world do not fit, StudyError if two tasks have one name, or a target
+    has no exam.
     """
     paper = extent.paper(paper)
     chosen = _chosen(paper, extent, tasks)

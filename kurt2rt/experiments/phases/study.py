@@ -342,17 +342,10 @@ def make_plan(
     quick: bool = False,
     engine: EngineRequest = EngineRequest.CAN,
 ) -> StudyPlan[PhasesTask]:
-    """Check task and worlds, and return the jobs.
+    """Check task and worlds, and return the jobs, all steps for each seed.
 
-    Args:
-        task: with a section on phases.
-        seeds: one robot each.
-        parts: factory, robot and results of the jobs.
-        quick: all steps, each so short that it says nothing but that everything works.
-        engine: requested for lessons and exams; the lessons of phases 3 to 5 are given on the CAN bus.
-
-    Raises:
-        config.settings.SettingsError: the task has no such section, or does not fit a world.
+    Lessons of phases 3 to 5 are given on the CAN bus. `quick`: each step so short that it only shows that it works.
+    Raises config.settings.SettingsError if the task has no section on phases, or does not fit a world.
     """
     robot = parts["robot"]
     if quick:

@@ -165,19 +165,10 @@ def make_plan(
     *,
     basic_folder: Path | None = None,
 ) -> StudyPlan[RouteTasks]:
-    """Check tasks, worlds and routes, and return the jobs.
+    """Check tasks, worlds and routes, and return the jobs, a robot for each seed and length.
 
-    Args:
-        task: that teaches the route.
-        seeds: one robot each.
-        decisions: lengths of the routes; empty: the task's own.
-        parts: factory, robot and results of the jobs.
-        basic_folder: knowledge files of the streets, by `kurt2rt train`; None: the streets are taught first.
-
-    Raises:
-        config.settings.SettingsError: a task and a world do not fit.
-        StudyError: a knowledge file is missing.
-        KnowledgeError: a knowledge file cannot be read.
+    `decisions`: lengths of the routes; empty: the task's own. `basic_folder`: knowledge files of the streets; None: the
+    streets are taught first. Raises config.settings.SettingsError, StudyError for a missing file, KnowledgeError.
     """
     basic = basic_task_of(task)
     lengths = tuple(dict.fromkeys(decisions)) or (route_of_task(task).decisions,)
@@ -222,12 +213,8 @@ def streets_of(
 ) -> TaughtStreets:
     """Return the jobs that teach the streets, and the knowledge file of each robot.
 
-    `folder`: files as `kurt2rt train` leaves them, which are used instead of jobs; None: the streets are taught.
-
-    Raises:
-        StudyError: a knowledge file is missing.
-        KnowledgeError: a knowledge file cannot be read.
-        SettingsError: a task and a world do not fit.
+    `folder`: files as `kurt2rt train` leaves them, which are used instead of jobs; None: the streets are taught. Raises
+    StudyError, KnowledgeError, SettingsError.
     """
     if folder is not None:
         files = {seed: basic_file(folder, basic, seed) for seed in seeds}

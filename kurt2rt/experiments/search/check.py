@@ -115,18 +115,10 @@ def run_check(
     executor: Executor,
     on_progress: Callable[[PoolProgress], None],
 ) -> CheckResult:
-    """Write down the best trials, teach and examine all robots of the check that have no result, and compare.
+    """Write down the best of `trials` trials, teach and examine all robots of the check, and compare.
 
-    Args:
-        plan: of the search.
-        found: its trials.
-        trials: number of trials that the best ones are chosen among.
-        executor: runs the jobs.
-        on_progress: gets the robot time of the check.
-
-    Raises:
-        StudyError: a process was killed, or results of other settings are in the folder.
-        Exception: any error of a job.
+    Robots that have a result are not taught again. `on_progress` gets the robot time of the check. Raises StudyError
+    for results of other settings, and any error of a job.
     """
     results, record = plan.parts["results"], _begin_check(plan, found, trials)
     sets = {SHIPPED: plan.space.shipped, **{label_of(each): found.values(each) for each in record.candidates}}

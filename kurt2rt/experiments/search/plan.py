@@ -153,14 +153,8 @@ def highest_score(robots: Sequence[ExaminedOutcome], exams: int) -> float:
 def make_plan(search: SearchSettings, parts: JobParts, *, changes: Mapping[str, str]) -> SearchPlan:
     """Check task, space and worlds, and return the plan.
 
-    Args:
-        search: what is searched.
-        parts: factory, robot and results of the jobs.
-        changes: values by dotted key of the task's file, of all trials and of the shipped settings.
-
-    Raises:
-        config.settings.SettingsError: a key, the task or a world does not fit.
-        BatchRefusedError: a batch does not know the task.
+    `changes`: values by dotted key of the task's file, of all trials and of the shipped settings. Raises
+    config.settings.SettingsError, and BatchRefusedError if a batch does not know the task.
     """
     space = TaskSpace(search, changes, load_teacher(search.teacher))
     task = space.task(space.shipped)

@@ -96,17 +96,8 @@ def run_trials(
 ) -> SearchTrials:
     """Run so many trials, and return them; robots that have a result are not taught again.
 
-    Which values a trial has does not depend on the number of processes.
-
-    Args:
-        plan: of the search.
-        trials: number of trials.
-        executor: runs the jobs.
-        on_progress: gets the robot time of all trials; a pruned one counts as whole.
-
-    Raises:
-        StudyError: a process was killed, or results of other settings are in the folder.
-        Exception: any error of a job.
+    The values of a trial do not depend on the number of processes. `on_progress` gets the robot time of all trials; a
+    pruned one counts as whole. Raises StudyError for results of other settings, and any error of a job.
     """
     found, at_once, trial_s = SearchTrials(plan), plan.search.at_once, trials_time_s(plan, 1)
     for first in range(0, trials, at_once):

@@ -54,13 +54,10 @@ class ClusterExecutor:
         results: Results,
         on_progress: Callable[[PoolProgress], None],
     ) -> None:
-        """Run all jobs, the longest first; a job whose worker was killed runs on another one.
+        """Run all jobs (`Executor.run`); a job whose worker was killed runs on another one.
 
-        Raises:
-            ClusterError: there is no worker, or the scheduler is gone.
-            JobKilledError: the workers of a job were killed again and again.
-            WorkerDiffersError: a worker has another program, or two came to different results.
-            Exception: any error of a job.
+        Raises ClusterError if there is no worker, or the scheduler is gone; JobKilledError if the workers of a job were
+        killed again and again; WorkerDiffersError if a worker has another program, or two came to different results.
         """
         waiting = sorted(jobs, key=lambda job: -job.robot_time_s)
         witnessed = set(choose_witnesses([job.file for job in jobs], "jobs on two workers", least=1))
@@ -110,16 +107,8 @@ def require_witness(
 ) -> None:
     """Run a job on another worker too, if there is one, and compare the results.
 
-    Args:
-        client: of the cluster.
-        future: finished future of the job; not released.
-        job: the job.
-        remote_job: its remote job.
-        files: files that it gave.
-
-    Raises:
-        WorkerDiffersError: the results differ.
-        Exception: any error of the job.
+    `future`: finished future of the job; not released. `files`: files that the job gave. Raises WorkerDiffersError if
+    the results differ, and any error of the job.
     """
     own = {each for places in client.who_has([future]).values() for each in places}
     others = sorted(set(client.scheduler_info()["workers"]) - own)
@@ -153,13 +142,9 @@ def _files_of(future: Future, job: StoredJob) -> dict[str, bytes]:
 
 
 async def serve(file: Path, on_ready: Callable[[str], None]) -> None:
-    """Be a worker: run jobs, one at a time in this process, until the scheduler is gone.
+    """Be a worker: run jobs, one at a time in this process, until the scheduler is gone; `on_ready` gets the address.
 
-    Args:
-        file: of the cluster.
-        on_ready: gets the worker's address.
-
-    Raises ClusterError if that is no file of a cluster, or no scheduler with its certificate answers.
+    Raises ClusterError if `file` is no file of a cluster, or no scheduler with its certificate answers.
     """
     address, security = read_cluster_file(file)
     logging.getLogger("distributed").setLevel(logging.WARNING)

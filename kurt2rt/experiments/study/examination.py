@@ -37,21 +37,10 @@ def examine_file(
     worlds: Sequence[str] = (),
     broken: str | None = None,
 ) -> tuple[DriveRow, ...]:
-    """Examine the robot of a file in each world, next to its teacher's policy, and return the drives in order.
+    """Examine the robot of a knowledge file in each world, next to its teacher's policy; return the drives in order.
 
-    Args:
-        knowledge: file with its lessons.
-        robot: settings of the robot.
-        task: that was taught; a route that names no seed is that of this robot.
-        seed: of the robot, its noise and its start.
-        report: progress callback.
-        worlds: empty: those of the task.
-        broken: sensor that breaks and the way in which, such as s15=low; None: all work.
-
-    Raises:
-        KnowledgeError: the file cannot be read.
-        config.settings.SettingsError: task and worlds do not fit.
-        LessonLostError: the robot refused a command.
+    `task`: a route that names no seed is that of this robot. `worlds`: empty: those of the task. `broken`: sensor that
+    breaks and the way in which, such as s15=low; None: all work. Raises KnowledgeError, SettingsError, LessonLostError.
     """
     task, stage = with_own_route(task, seed), simulations_of(robot)
     worlds = tuple(worlds) or task.exam.worlds
@@ -81,18 +70,10 @@ class Examiner:
     async def examine(
         self, policy: DriveRow, events: Sequence[TeachingEvent], learners: LearnerTeam | None = None
     ) -> DriveRow:
-        """Return the drive of a taught robot, judged by the policy's drive.
+        """Return the drive of a taught robot, judged by the policy's drive; learners decide in place of RLAs if given.
 
-        A world in which the policy itself does not pass is no measure, and the drive is not judged.
-
-        Args:
-            policy: own drive of the policy.
-            events: lessons of the RLAs.
-            learners: decide in place of the RLAs; None: RLAs decide.
-
-        Raises:
-            SettingsError: task and world do not fit.
-            LessonLostError: the robot refused a command.
+        A world in which the policy itself does not pass is no measure, and the drive is not judged. Raises
+        SettingsError if task and world do not fit, LessonLostError if the robot refused a command.
         """
         exam = await self._drive(ExamSetup(self.world, self.job.seed, events=events, learners=learners))
         return exam.judged_by(policy.progress, self.task.exam.success) if policy.passed else exam
@@ -131,12 +112,8 @@ async def run_checkpoints(
 ) -> list[Checkpoint]:
     """Examine the knowledge after each of these numbers of presses; equal knowledge is examined once.
 
-    Args:
-        given: lesson with all events that its file then holds.
-        after: numbers of presses, ascending.
-        period_s: of a tick, in s.
-        examine: gives the exams.
-        known: number of events before the lesson.
+    `given`: lesson with all events that its file then holds, of which `known` came before it. `after`: ascending.
+    `period_s`: of a tick.
     """
     lesson, events = given
     checkpoints: list[Checkpoint] = []
@@ -156,12 +133,8 @@ async def run_checkpoints(
 def events_before_press(events: Sequence[TeachingEvent], press_ticks: Sequence[int], presses: int) -> int:
     """Return how many events of a lesson were applied before the press that follows `presses` others.
 
-    A hold teaches until its release, and so all lessons of a press come before the next press.
-
-    Args:
-        events: of the lesson alone, in order.
-        press_ticks: tick in which each press of the lesson was sent; the robot applies it in a later tick.
-        presses: number of presses that count.
+    A hold teaches until its release, and so all lessons of a press come before the next press. `press_ticks`: tick in
+    which each press was sent; the robot applies it in a later tick.
     """
     if presses >= len(press_ticks):
         return len(events)

@@ -109,11 +109,8 @@ def quartiles(values: Sequence[float]) -> tuple[float, float, float]:
 def difference_of(changes: Sequence[float], comparisons: int = 1) -> Rate:
     """Return the mean change of the same robots, with an interval bootstrapped over the robots.
 
-    The interval of equal changes is a point, and infinite for one robot.
-
-    Args:
-        changes: one for each robot.
-        comparisons: number of comparisons whose intervals hold together with 95 % (Bonferroni); each one is wider.
+    The interval of equal changes is a point, and infinite for one robot. The intervals of so many `comparisons` hold
+    together with 95 % (Bonferroni).
     """
     value = math.fsum(changes) / len(changes)
     if len(changes) == 1:

@@ -68,17 +68,10 @@ class Executor(Protocol):
         results: Results,
         on_progress: Callable[[PoolProgress], None],
     ) -> None:
-        """Run all jobs, of which none needs another; the longest begin first.
+        """Run all jobs of a wave, of which none needs another; the longest begin first.
 
-        Args:
-            jobs: of one wave.
-            earlier: jobs that are done, by the seed of their robot.
-            results: folder of results.
-            on_progress: gets the progress of all jobs.
-
-        Raises:
-            JobKilledError: the process or the workers of a job were killed.
-            Exception: any error of a job.
+        `earlier`: jobs that are done, by the seed of their robot. `results`: folder of results. Raises JobKilledError
+        if the process or the workers of a job were killed, and any error of a job.
         """
 
 

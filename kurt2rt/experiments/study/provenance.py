@@ -98,16 +98,10 @@ class Fingerprints:
         self._known: dict[tuple[str, str], str] = {}
 
     def of(self, task: TaskSettings, worlds: Iterable[str], *more: str, learner: str = "") -> Provenance:
-        """Return the provenance of a job.
+        """Return the provenance of a job in these worlds.
 
-        Args:
-            task: that is taught.
-            worlds: of lesson and exams.
-            more: further texts that decide its result.
-            learner: text that changes with the learner; empty for RLAs.
-
-        Raises:
-            config.settings.SettingsError: settings of the task or a world cannot be loaded.
+        `more`: further texts that decide its result. `learner`: text that changes with the learner; empty for RLAs.
+        Raises config.settings.SettingsError if settings of the task or a world cannot be loaded.
         """
         plugins = _plugin_sources(task)
         of_task = task.model_dump_json(exclude=self._leave_out, serialize_as_any=True)

@@ -39,15 +39,9 @@ def write_report(
 ) -> None:
     """Write the report of a study as an HTML page to `path`. Raises OSError.
 
-    Args:
-        path: of the file.
-        title: of the page.
-        sections: in their order; the first one comes before the reasons and needs no heading, the last one ends with
-            the command.
-        command: typed words, without those that belong to the machine alone.
-        footer: sentences on how it was made, around the versions: `{versions}` and `{source}` stand for these.
-        reasons: those against judging.
-        extent: what is left out, below the reasons.
+    The first section comes before the reasons and needs no heading; the last one ends with `command`, without words
+    that belong to the machine alone. `footer`: `{versions}` and `{source}` stand for these. `reasons`: those against
+    judging. `extent`: what is left out.
     """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("kurt2rt.experiments.study", ""),

@@ -59,12 +59,7 @@ def targets_table(
 ) -> Table:
     """Return a row for each verdict; with reasons against judging, all results are `not judged`.
 
-    Args:
-        verdicts: each with the cells of the columns `headings`.
-        not_judged_because: reasons against judging.
-        title: of the table.
-        headings: of the first columns.
-        note_without_targets: note if there are no verdicts.
+    `verdicts`: each with the cells of the columns `headings`, which come first.
     """
     found = list(verdicts)
     met = sum(verdict.met for _, verdict in found)
