@@ -287,8 +287,7 @@ def compare(options: _Compare) -> None:
     Results are kept in --out, so an interrupted run goes on where it was.
     docs/extend.md says how to write a learner.
     """
-    from kurt2rt.experiments.compare.study import PUPILS, Pupil, make_plan
-    from kurt2rt.experiments.compare.tables import tell
+    from kurt2rt.experiments.compare import PUPILS, Pupil, make_plan, tell
 
     names = dict.fromkeys(options.task or ("wall_following",))
     robot = load_robot_of(options.robot_settings, next(iter(names)))
@@ -454,8 +453,7 @@ def certify(options: _Certify) -> None:
     Results are kept in --out, so an interrupted run goes on where it was. Tasks
     that the batch does not know, such as routes, are driven on the CAN bus.
     """
-    from kurt2rt.experiments.certify.study import BrokenShare, Extent, make_plan, picture_jobs, read_drives
-    from kurt2rt.experiments.certify.tables import tell, worst_of
+    from kurt2rt.experiments.certify import BrokenShare, Extent, make_plan, picture_jobs, read_drives, tell, worst_of
 
     task, robot = options.load()
     engine = options.engine_for(task, robot)
@@ -512,11 +510,10 @@ def search(options: _Search) -> None:
         kurt2rt study search wall_following
         kurt2rt study search circle --trials 20 --jobs 2
     """
-    from kurt2rt.experiments.search.check import check_time_s, require_unchecked, run_check
     from kurt2rt.experiments.search.plan import make_plan
     from kurt2rt.experiments.search.settings import load_search
     from kurt2rt.experiments.search.tables import tell
-    from kurt2rt.experiments.search.trials import run_trials, trials_time_s
+    from kurt2rt.experiments.search.trials import check_time_s, require_unchecked, run_check, run_trials, trials_time_s
 
     settings = load_search(options.search)
     trials = options.trials or settings.trials
@@ -560,7 +557,7 @@ def worker(options: _Worker) -> None:
         kurt2rt study paper --cluster lab.cluster
     """
     if options.new is not None and options.cluster is None:
-        from kurt2rt.experiments.study.cluster_file import make_cluster_file, scheduler_command
+        from kurt2rt.experiments.study.cluster import make_cluster_file, scheduler_command
 
         make_cluster_file(options.new, options.scheduler)
         print(f"cluster  {options.new}: copy it to each machine, and keep it to yourself", file=sys.stdout)

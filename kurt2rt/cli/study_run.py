@@ -14,11 +14,9 @@ from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs
 from kurt2rt.cli.progress import OneBar, one_bar
 from kurt2rt.cli.tables import print_told
-from kurt2rt.experiments.study.bus_witness import require_no_difference
-from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.jobs import JobParts, Results
 from kurt2rt.experiments.study.pool import Executor, Waves, missing_time_s, open_processes, run_missing
-from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.study_plan import AboutT, EngineRequest, StudyPlan
+from kurt2rt.experiments.study.study_plan import AboutT, EngineRequest, StudyPlan, require_no_difference
 from kurt2rt.experiments.study.table import Told
 from simbridge.contracts.robot_kind import simulations_of
 

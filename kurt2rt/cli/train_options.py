@@ -20,8 +20,7 @@ from kurt2rt.cli.options import (
 )
 from kurt2rt.cli.study_run import EngineOptions
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.jobs import JobParts, Results
 from simbridge.contracts.simulation import SimulationFactory
 
 DEFAULT_TASK = "wall_following"

@@ -33,8 +33,7 @@ def one_route(setup: TrainSetup, options: TrainOptions) -> None:
         KnowledgeError: a knowledge file cannot be read or written.
     """
     # Not at the top: drawing is an extra, and every command is loaded where --help is said.
-    from kurt2rt.experiments.route.figures import draw_route
-    from kurt2rt.experiments.route.tables import robot_table
+    from kurt2rt.experiments.route.tables import draw_route, robot_table
 
     given = tuple(options.decisions or ())
     if len(given) > 1:
@@ -84,8 +83,7 @@ def errands(setup: TrainSetup, options: TrainOptions) -> None:
 
     Raises the errors of `many_routes`, and typer.BadParameter if an option belongs to other tasks.
     """
-    from kurt2rt.experiments.navigation.study import make_plan
-    from kurt2rt.experiments.navigation.tables import tell
+    from kurt2rt.experiments.navigation.study import make_plan, tell
 
     if options.decisions or options.knowledge is not None:
         raise typer.BadParameter("errands take neither --decisions nor --knowledge; leave them out")

@@ -27,14 +27,17 @@ from kurt2rt.experiments.study.study_plan import EngineRequest, Group, StudyPlan
 from kurt2rt.experiments.study.table import (
     Table,
     Told,
+    Verdict,
     collisions_text,
     middle,
+    needed_of,
     of_text,
+    reasons_against_judging,
     share,
     table_of,
+    targets_table,
     total,
 )
-from kurt2rt.experiments.study.targets import Verdict, needed_of, reasons_against_judging, targets_table
 from kurt2rt.knowledge.journal.loading import copy_knowledge, read_lessons
 
 AFTER = (0, 2, 5, 10, 15, 20)

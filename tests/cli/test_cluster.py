@@ -19,15 +19,16 @@ from distributed import Scheduler, Security
 from distributed.comm import CommClosedError, connect
 
 from kurt2rt.cli.study_run import open_executor
-from kurt2rt.experiments.study.cluster import require_witness, serve
-from kurt2rt.experiments.study.cluster_file import (
+from kurt2rt.experiments.study.cluster import (
     ClusterError,
     make_cluster_file,
     read_cluster_file,
+    require_witness,
     scheduler_command,
+    serve,
 )
+from kurt2rt.experiments.study.jobs import Results
 from kurt2rt.experiments.study.remote_job import RemoteJob, WorkerDiffersError
-from kurt2rt.experiments.study.results import Results
 from tests.cli.helpers import ROOT, CommandLine
 from tests.experiments.study.test_remote_job import Job
 

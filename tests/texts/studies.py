@@ -3,12 +3,12 @@
 from collections.abc import Iterator
 
 from kurt2rt.experiments.lockstep.drive_row import ExamVerdict
-from kurt2rt.experiments.navigation.tables import all_tables as navigation_tables
+from kurt2rt.experiments.navigation.study import all_tables as navigation_tables
 from kurt2rt.experiments.paper.tables import paper_targets_table
 from kurt2rt.experiments.phases.steps import Step
 from kurt2rt.experiments.phases.tables import phases_targets_table, words_of_controls
 from kurt2rt.experiments.study.exam_tables import verdict_text
-from kurt2rt.experiments.study.targets import reasons_against_judging
+from kurt2rt.experiments.study.table import reasons_against_judging
 from kurt2rt.experiments.transfer import all_tables as transfer_tables
 from tests.experiments.navigation import test_tables as navigation
 from tests.experiments.navigation.test_goals import settings

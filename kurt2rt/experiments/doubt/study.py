@@ -6,13 +6,19 @@ from pathlib import Path
 from typing import ClassVar, NamedTuple
 
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.doubt.drive import DoubtResponse, DoubtSetup, drive, with_doubt
-from kurt2rt.experiments.doubt.measures import DriveLog, judge_score, threshold_for
+from kurt2rt.experiments.doubt.drive import (
+    DoubtResponse,
+    DoubtSetup,
+    DriveLog,
+    drive,
+    judge_score,
+    threshold_for,
+    with_doubt,
+)
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.study.intervals import rate_of
-from kurt2rt.experiments.study.jobs import JobParts, StudyJob, require_places, world_of
+from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints
-from kurt2rt.experiments.study.results import Outcome
 from kurt2rt.experiments.study.study_plan import Group, StudyPlan, read_groups
 from kurt2rt.experiments.study.table import Table, Told, of_text, rate_text, table_of
 from kurt2rt.knowledge.journal.loading import read_lessons

@@ -14,7 +14,7 @@ from kurt2rt.core.teaching.commands import BeAt, Seek, StopSeeking
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.episode import Episode
-from kurt2rt.experiments.navigation.tour_guide import HOME
+from kurt2rt.experiments.navigation.guided_tour import HOME
 from kurt2rt.runtime import Runtime
 from simbridge.contracts.simulation import Pose, Simulation
 

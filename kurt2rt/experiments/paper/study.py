@@ -12,11 +12,18 @@ from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.paper.settings import ExperimentSettings, Extent, PaperSettings
-from kurt2rt.experiments.study.jobs import CurriculumJob, ExaminedOutcome, JobParts, StudyJob, curriculum_time_s
+from kurt2rt.experiments.study.jobs import (
+    CurriculumJob,
+    ExaminedOutcome,
+    JobParts,
+    Outcome,
+    StudyError,
+    StudyJob,
+    curriculum_time_s,
+)
 from kurt2rt.experiments.study.provenance import Fingerprints
-from kurt2rt.experiments.study.results import Outcome, StudyError
 from kurt2rt.experiments.study.study_plan import EngineRequest, Group, StudyPlan, group_by, read_groups
-from kurt2rt.experiments.study.targets import ROBOTS
+from kurt2rt.experiments.study.table import ROBOTS
 
 Reading = Literal["shipped", "plain"]
 """Reading of the paper's scheme: the settings of this project, or the literal ones."""

@@ -34,18 +34,22 @@ from kurt2rt.experiments.study.intervals import collisions_in_10_min, quartiles,
 from kurt2rt.experiments.study.report import Section, spans, write_report
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.study.table import (
+    ROBOTS,
     Column,
     Table,
     Told,
+    Verdict,
     median,
     middle,
     most,
+    needed_of,
     of_text,
     quarters,
+    reasons_against_judging,
     table_of,
+    targets_table,
     to_text,
 )
-from kurt2rt.experiments.study.targets import ROBOTS, Verdict, needed_of, reasons_against_judging, targets_table
 from simbridge.contracts.simulation import SimulationFactory
 
 CHOSEN_ON_ROOMS = range(60)

@@ -8,8 +8,7 @@ from typing import NamedTuple
 from behaviors.metrics.task_metric import DISTANCE_ERROR
 from kurt2rt.core.phase_settings import AskedShare
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, label_of
-from kurt2rt.experiments.phases.controls import Judgement
-from kurt2rt.experiments.phases.steps import Step, phases_of
+from kurt2rt.experiments.phases.steps import Judgement, Step, phases_of
 from kurt2rt.experiments.phases.study import JobOutcome, PhasesTask, StageOutcome, TeachingOutcome
 from kurt2rt.experiments.study.exam_tables import (
     Drives,
@@ -25,10 +24,12 @@ from kurt2rt.experiments.study.intervals import (
 )
 from kurt2rt.experiments.study.study_plan import Group, StudyPlan, group_by
 from kurt2rt.experiments.study.table import (
+    Verdict,
+    needed_of,
     of_text,
+    reasons_against_judging,
     to_text,
 )
-from kurt2rt.experiments.study.targets import Verdict, needed_of, reasons_against_judging
 
 HOUR_S = 3600.0
 Stage = Group[Step, StageOutcome]

@@ -27,11 +27,20 @@ from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
-from kurt2rt.experiments.phases.controls import Judgement, Scoring, corrupt, critic_lessons, shuffled
-from kurt2rt.experiments.phases.steps import PhaseStep, Step, phases_of, shortened, steps_of
-from kurt2rt.experiments.study.jobs import JobParts, StudyJob, require_places
+from kurt2rt.experiments.phases.steps import (
+    Judgement,
+    PhaseStep,
+    Scoring,
+    Step,
+    corrupt,
+    critic_lessons,
+    phases_of,
+    shortened,
+    shuffled,
+    steps_of,
+)
+from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyError, StudyJob, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
-from kurt2rt.experiments.study.results import Outcome, StudyError
 from kurt2rt.experiments.study.study_plan import EngineRequest, StudyPlan
 from kurt2rt.knowledge.journal.fold import fold_journal
 from kurt2rt.knowledge.journal.journal import Journal

@@ -52,10 +52,10 @@ from kurt2rt.experiments.study.table import (
     rate_columns,
     share_text,
     table_of,
+    targets_table,
     to_text,
     total,
 )
-from kurt2rt.experiments.study.targets import targets_table
 
 SUCCESS = (
     "Success is an exam without collision in which the robot is never stuck nor stopped by the guard, and makes at "

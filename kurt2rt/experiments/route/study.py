@@ -15,9 +15,8 @@ from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict, Place
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.route.route_monitor import RouteMistake, RouteMonitor
-from kurt2rt.experiments.study.jobs import JobParts, StudyJob, TaughtOutcome, require_places
+from kurt2rt.experiments.study.jobs import JobParts, StudyError, StudyJob, TaughtOutcome, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints
-from kurt2rt.experiments.study.results import StudyError
 from kurt2rt.experiments.study.study_plan import Group, StudyPlan
 from kurt2rt.knowledge.journal.loading import copy_knowledge, read_lessons
 

@@ -9,9 +9,7 @@ from typing import ClassVar
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.batch_mind import require_known_exams, require_known_lesson
 from kurt2rt.experiments.lockstep.engine import Engine, Engines, choose_witnesses
-from kurt2rt.experiments.search.settings import CheckSettings, Objective, Robots, SearchSettings
-from kurt2rt.experiments.search.space import TaskSpace, Values
-from kurt2rt.experiments.study.bus_witness import BusWitnessJob
+from kurt2rt.experiments.search.settings import CheckSettings, Objective, Robots, SearchSettings, TaskSpace, Values
 from kurt2rt.experiments.study.jobs import (
     CurriculumJob,
     ExaminedOutcome,
@@ -20,6 +18,7 @@ from kurt2rt.experiments.study.jobs import (
     require_places,
 )
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
+from kurt2rt.experiments.study.study_plan import BusWitnessJob
 
 SHIPPED = "shipped"
 """Label of the shipped settings."""

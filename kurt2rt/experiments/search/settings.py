@@ -1,13 +1,18 @@
-"""Schema of `config/searches/*.yaml`: settings to search, robots and worlds, and the objective."""
+"""Schema of `config/searches/*.yaml`, and the task of a search with the values of a trial in place of its own."""
 
+import copy
+import json
 import re
-from typing import Annotated, Literal, Self
+from collections.abc import Mapping
+from itertools import combinations, product
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from config.settings import Settings, load_settings
+from config.settings import Settings, SettingsError, load_settings
 from config.settings_files import find_config
-from kurt2rt.core.task_settings import Name
+from kurt2rt.core.task_settings import Name, TaskSettings, load_task, taught_by
+from kurt2rt.core.teacher_settings import TeacherProfile
 from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.study.jobs import SEED, world_of
 
@@ -113,3 +118,120 @@ class SearchSettings(Settings):
 def load_search(name_or_path: str) -> SearchSettings:
     """Load a shipped search by name (`config/searches`), or a file by path. Raises config.settings.SettingsError."""
     return load_settings(find_config("searches", name_or_path), SearchSettings)
+
+
+Values = Mapping[str, float]
+"""Value of each key of the space; whole numbers for a dimension of kind int."""
+_DIGITS = 3
+"""Significant digits of a value of a trial, so that a found setting is legible."""
+
+
+def content_of_task(task: TaskSettings) -> dict[str, Any]:
+    """Return a task as mappings, lists and values, with all defaults."""
+    content: dict[str, Any] = json.loads(task.model_dump_json(serialize_as_any=True))
+    return content
+
+
+def value_at(content: Mapping[str, Any], key: str) -> float:
+    """Return the number at a dotted key, in the unit of its name (m, s or counts). Raises SettingsError without one."""
+    place: Any = content
+    for level in key.split("."):
+        place = _step(place, level, key)
+    if isinstance(place, bool) or not isinstance(place, int | float):
+        raise SettingsError(f"{key}: no number (got {place!r})", where="space", do="give a key that holds a number")
+    return place
+
+
+def _step(place: Any, level: str, key: str) -> Any:
+    if isinstance(place, Mapping) and level in place:
+        return place[level]
+    if isinstance(place, list) and level.isdecimal() and int(level) < len(place):
+        return place[int(level)]
+    names = range(len(place)) if isinstance(place, list) else place if isinstance(place, Mapping) else ()
+    allowed = ", ".join(map(str, names)) or "nothing"
+    raise SettingsError(f"{key}: no such key (got {level}, allowed {allowed})", where="space")
+
+
+def changes_of_values(content: Mapping[str, Any], values: Values) -> dict[str, Any]:
+    """Return what to change in the task's file, by dotted key; a list that a key leads through is whole.
+
+    Raises SettingsError if a key leads nowhere.
+    """
+    changed = copy.deepcopy(dict(content))
+    tops: dict[str, Any] = {}
+    for key, value in values.items():
+        value_at(changed, key)
+        *levels, last = key.split(".")
+        place: Any = changed
+        top = ""
+        for number, level in enumerate(levels):
+            place = _step(place, level, key)
+            if isinstance(place, list) and not top:
+                top = ".".join(levels[: number + 1])
+        place[int(last) if isinstance(place, list) else last] = value
+        tops[top or key] = None
+    return {top: _at(changed, top) for top in tops}
+
+
+def _at(content: Mapping[str, Any], key: str) -> Any:
+    place: Any = content
+    for level in key.split("."):
+        place = place[level]
+    return place
+
+
+class TaskSpace:
+    """Task of a search, with the values of a trial in place of its own."""
+
+    def __init__(self, search: SearchSettings, changes: Mapping[str, str], profile: TeacherProfile) -> None:
+        """Load the task and check each key of the space.
+
+        `changes`: values by dotted key that all trials and the shipped settings share. `profile`: the teacher. Raises
+        SettingsError for a key that leads nowhere, or that the teacher or a change decides.
+        """
+        self._search, self._changes, self._profile = search, changes, profile
+        task = load_task(search.task, changes=changes)
+        self._content = content_of_task(task)
+        self.shipped: Values = {each.key: value_at(self._content, each.key) for each in search.space}
+        for each in search.space:
+            self._require_free(each)
+        self._require_fit()
+
+    def changes(self, values: Values) -> dict[str, Any]:
+        """Return what a trial changes in the task's file, by dotted key."""
+        return changes_of_values(self._content, values)
+
+    def task(self, values: Values) -> TaskSettings:
+        """Return the task of a trial, with its teacher. Raises SettingsError if the values do not fit together."""
+        own = {key: json.dumps(value) for key, value in self.changes(values).items()}
+        return taught_by(load_task(self._search.task, changes={**self._changes, **own}), self._profile)
+
+    def _require_free(self, dimension: Dimension) -> None:
+        key, shipped = dimension.key, self.shipped[dimension.key]
+        for each in self._changes:
+            if f"{key}.".startswith(f"{each}."):
+                raise SettingsError(f"{key}: --set {each} decides it", where="space", do="leave --set out")
+        if not dimension.low <= shipped <= dimension.high:
+            raise SettingsError(
+                f"{key}: the range leaves the shipped value out (got {shipped:g}, "
+                f"allowed {dimension.low:g} to {dimension.high:g})",
+                where="space",
+                do="widen the range",
+            )
+        other = dimension.low if shipped != dimension.low else dimension.high
+        tried = rounded(dimension, other)
+        if value_at(content_of_task(self.task({key: tried})), key) != tried:
+            raise SettingsError(
+                f"{key}: the teacher {self._profile.name} decides it", where="space", do="name another teacher or key"
+            )
+
+    def _require_fit(self) -> None:
+        """Check the ends of each two ranges, so that no trial fails on values that do not fit each other."""
+        for first, second in combinations(self._search.space, 2):
+            for one, other in product((first.low, first.high), (second.low, second.high)):
+                self.task({first.key: rounded(first, one), second.key: rounded(second, other)})
+
+
+def rounded(dimension: Dimension, value: float) -> float:
+    """Return a value in the key's unit (m, s or counts) with 3 significant digits."""
+    return min(max(float(f"{value:.{_DIGITS}g}"), dimension.low), dimension.high)

@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from optuna.trial import FrozenTrial
 
-from kurt2rt.experiments.search.check import CheckedSettings, CheckResult, best_trials
 from kurt2rt.experiments.search.plan import (
     PRESSES_OF_A_COLLISION,
     SHIPPED,
@@ -20,7 +19,7 @@ from kurt2rt.experiments.search.plan import (
     label_of,
 )
 from kurt2rt.experiments.search.settings import Objective, Robots
-from kurt2rt.experiments.search.trials import SearchTrials, finished
+from kurt2rt.experiments.search.trials import CheckedSettings, CheckResult, SearchTrials, best_trials, finished
 from kurt2rt.experiments.study.figures import SavedFigure, save
 from kurt2rt.experiments.study.intervals import Rate
 from kurt2rt.experiments.study.jobs import ExaminedOutcome

@@ -18,7 +18,7 @@ from typing import NamedTuple, Protocol
 from threadpoolctl import threadpool_limits
 
 from config.errors import ExitCode, UserError
-from kurt2rt.experiments.study.results import Progress, Results, StoredJob, StudyError
+from kurt2rt.experiments.study.jobs import Progress, Results, StoredJob, StudyError
 from kurt2rt.platform.gc_control import freeze_survivors
 
 _LOOK_EVERY_S = 0.5

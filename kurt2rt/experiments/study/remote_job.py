@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 from threadpoolctl import threadpool_limits
 
 from config.errors import UserError
+from kurt2rt.experiments.study.jobs import Results, StoredJob
 from kurt2rt.experiments.study.provenance import program_hash, versions_with_python
-from kurt2rt.experiments.study.results import Results, StoredJob
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.platform.durable_files import fsync_file, write_durably
 

@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import ClassVar
 
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.study.jobs import CurriculumJob, ExaminedOutcome, JobParts, curriculum_time_s
+from kurt2rt.experiments.study.jobs import CurriculumJob, ExaminedOutcome, JobParts, Progress, curriculum_time_s
 from kurt2rt.experiments.study.provenance import Fingerprints
-from kurt2rt.experiments.study.results import Progress
 from kurt2rt.experiments.study.study_plan import EngineRequest, StudyPlan
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 

@@ -10,27 +10,29 @@ import pytest
 from config.settings import SettingsError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.certify.study import (
+from kurt2rt.experiments.certify import (
     BlockJob,
     BrokenShare,
     Certified,
     Extent,
     Run,
+    all_tables,
     draw_runs,
+    draw_worst,
     make_plan,
     picture_jobs,
     read_drives,
     read_pictures,
+    summarise,
 )
-from kurt2rt.experiments.certify.tables import all_tables, draw_worst, summarise
 from kurt2rt.experiments.lockstep import curriculum
 from kurt2rt.experiments.lockstep.batch_exam import examine_in_batch
 from kurt2rt.experiments.lockstep.curriculum import run_drives
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import BatchDiffersError, Engine
 from kurt2rt.experiments.lockstep.exam import ExamSetup
+from kurt2rt.experiments.study.jobs import Results
 from kurt2rt.experiments.study.remote_job import pack, run_remote_job
-from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from simbridge.batch.compiled import IS_COMPILED

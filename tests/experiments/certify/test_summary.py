@@ -4,8 +4,7 @@ from typing import Any
 
 import pytest
 
-from kurt2rt.experiments.certify.study import BrokenShare, draw_runs
-from kurt2rt.experiments.certify.tables import summarise_runs, worst_of
+from kurt2rt.experiments.certify import BrokenShare, draw_runs, summarise_runs, worst_of
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind
 from kurt2rt.experiments.study.intervals import wilson_interval

@@ -18,8 +18,17 @@ from kurt2rt.core.learner.rla_learner import RlaLearner
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
-from kurt2rt.experiments.compare.study import PUPILS, SHIPPED, Compared, Pupil, PupilJob, PupilOutcome, make_plan
-from kurt2rt.experiments.compare.tables import Row, read_rows
+from kurt2rt.experiments.compare import (
+    PUPILS,
+    SHIPPED,
+    Compared,
+    Pupil,
+    PupilJob,
+    PupilOutcome,
+    Row,
+    make_plan,
+    read_rows,
+)
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, feature_table
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.lockstep.drive_row import DriveRow

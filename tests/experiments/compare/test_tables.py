@@ -2,8 +2,10 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.compare.study import SHIPPED, Pupil, PupilOutcome
-from kurt2rt.experiments.compare.tables import (
+from kurt2rt.experiments.compare import (
+    SHIPPED,
+    Pupil,
+    PupilOutcome,
     Row,
     all_tables,
     draw_curves,

@@ -8,14 +8,15 @@ import pytest
 
 from config.settings import SettingsError
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.doubt.drive import DoubtResponse, with_doubt
-from kurt2rt.experiments.doubt.measures import (
+from kurt2rt.experiments.doubt.drive import (
+    DoubtResponse,
     DriveLog,
     Scores,
     area_under_curve,
     judge_score,
     question_ticks,
     threshold_for,
+    with_doubt,
     wrong_ticks,
 )
 from kurt2rt.experiments.doubt.study import (

@@ -15,9 +15,8 @@ from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
 from kurt2rt.experiments.navigation import study as module
 from kurt2rt.experiments.navigation.guided_tour import guided_tour, navigation_settings
-from kurt2rt.experiments.navigation.study import ErrandsOutcome, NavigationJob, make_plan
-from kurt2rt.experiments.navigation.tables import tell
-from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.navigation.study import ErrandsOutcome, NavigationJob, make_plan, tell
+from kurt2rt.experiments.study.jobs import Results
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.helpers import ROBOT, STAGE

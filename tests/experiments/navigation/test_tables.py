@@ -3,8 +3,7 @@
 import re
 
 from kurt2rt.experiments.navigation.exam import GoalOutcome
-from kurt2rt.experiments.navigation.study import ErrandsOutcome
-from kurt2rt.experiments.navigation.tables import all_tables
+from kurt2rt.experiments.navigation.study import ErrandsOutcome, all_tables
 from tests.experiments.navigation.test_goals import settings
 from tests.experiments.rows import MADE_OF, titled
 

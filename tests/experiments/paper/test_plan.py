@@ -16,7 +16,7 @@ from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.paper.settings import QUICK, WHOLE, ExperimentSettings, Extent, PaperSettings, load_paper
 from kurt2rt.experiments.paper.study import GrowthJob, PaperExtent, Reading, TaughtJob, make_plan, unseen_of
 from kurt2rt.experiments.paper.tables import reasons_not_to_judge
-from kurt2rt.experiments.study.results import StudyError
+from kurt2rt.experiments.study.jobs import StudyError
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from tests.experiments.helpers import STAGE
 from tests.experiments.study.here import parts_in

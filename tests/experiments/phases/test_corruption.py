@@ -10,8 +10,7 @@ from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated, Teach
 from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.phases.controls import corrupt, critic_lessons, shuffled
-from kurt2rt.experiments.phases.steps import Step, steps_of
+from kurt2rt.experiments.phases.steps import Step, corrupt, critic_lessons, shuffled, steps_of
 
 PERIOD_S = 0.01
 

@@ -9,8 +9,7 @@ from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.phases.steps import Step
 from kurt2rt.experiments.phases.study import JobOutcome, PhasesTask, StepJob, make_plan
-from kurt2rt.experiments.study.jobs import JobParts, StudyJob
-from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.jobs import JobParts, Results, StudyJob
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from simbridge.contracts.robot_kind import simulations_of
 from tests.experiments.phases.outcomes import TASK, stage, teaching

@@ -14,8 +14,8 @@ from kurt2rt.experiments.phases.results import PhasesStudy, read_study
 from kurt2rt.experiments.phases.steps import Step
 from kurt2rt.experiments.phases.study import PhasesTask, make_plan
 from kurt2rt.experiments.phases.tables import tell
+from kurt2rt.experiments.study.jobs import StudyError
 from kurt2rt.experiments.study.pool import PoolProgress
-from kurt2rt.experiments.study.results import StudyError
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.study.table import Told
 from kurt2rt.knowledge.journal.loading import read_lessons

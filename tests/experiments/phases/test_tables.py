@@ -6,11 +6,10 @@ from dataclasses import replace
 import pytest
 
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
-from kurt2rt.experiments.phases.controls import Judgement
 from kurt2rt.experiments.phases.results import Stage, interventions, paired, score_of, verdicts
-from kurt2rt.experiments.phases.steps import PATH, Step
+from kurt2rt.experiments.phases.steps import PATH, Judgement, Step
 from kurt2rt.experiments.phases.tables import all_tables, words_of_controls
-from kurt2rt.experiments.study.targets import Verdict
+from kurt2rt.experiments.study.table import Verdict
 from tests.experiments.phases.outcomes import TASK, exam, stage, study, teaching
 from tests.experiments.rows import cells, titled
 

@@ -20,8 +20,8 @@ from kurt2rt.experiments.route.study import (
     make_plan,
 )
 from kurt2rt.experiments.route.tables import tell
+from kurt2rt.experiments.study.jobs import StudyError
 from kurt2rt.experiments.study.pool import PoolProgress
-from kurt2rt.experiments.study.results import StudyError
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.study.table import Told
 from kurt2rt.knowledge.journal.fold import fold_journal

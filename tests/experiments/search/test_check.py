@@ -8,20 +8,19 @@ import yaml
 from optuna.trial import FrozenTrial, TrialState, create_trial
 
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.search.check import (
+from kurt2rt.experiments.search.settings import Objective
+from kurt2rt.experiments.search.tables import write_found
+from kurt2rt.experiments.search.trials import (
     CheckedSettings,
     CheckRecord,
     CheckResult,
+    SearchTrials,
     _begin_check,
     compare,
     require_unchecked,
 )
-from kurt2rt.experiments.search.settings import Objective
-from kurt2rt.experiments.search.tables import write_found
-from kurt2rt.experiments.search.trials import SearchTrials
 from kurt2rt.experiments.study.intervals import Rate
-from kurt2rt.experiments.study.jobs import ExaminedOutcome
-from kurt2rt.experiments.study.results import StudyError
+from kurt2rt.experiments.study.jobs import ExaminedOutcome, StudyError
 from tests.experiments.search.test_score import robot
 from tests.experiments.search.tiny import tiny_plan
 

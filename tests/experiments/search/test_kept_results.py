@@ -8,8 +8,7 @@ import yaml
 
 from config.settings_files import find_config, shipped_names
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.search.settings import load_search
-from kurt2rt.experiments.search.space import content_of_task, value_at
+from kurt2rt.experiments.search.settings import content_of_task, load_search, value_at
 
 FOUND = sorted((find_config("searches", "wall_following").parent / "found").glob("*.yaml"))
 

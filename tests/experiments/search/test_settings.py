@@ -8,8 +8,7 @@ import pytest
 from config.settings import SettingsError
 from config.settings_files import shipped_names
 from kurt2rt.core.teacher_settings import load_teacher
-from kurt2rt.experiments.search.settings import load_search, may_be_searched
-from kurt2rt.experiments.search.space import TaskSpace
+from kurt2rt.experiments.search.settings import TaskSpace, load_search, may_be_searched
 from tests.experiments.search.tiny import CONTENT, tiny_settings
 
 

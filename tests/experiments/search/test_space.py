@@ -8,8 +8,7 @@ import pytest
 from config.settings import SettingsError
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teacher_settings import load_teacher
-from kurt2rt.experiments.search.settings import Dimension
-from kurt2rt.experiments.search.space import TaskSpace, rounded
+from kurt2rt.experiments.search.settings import Dimension, TaskSpace, rounded
 from tests.experiments.search.tiny import tiny_settings
 
 

@@ -11,8 +11,8 @@ from kurt2rt.experiments.search import trials as trials_module
 from kurt2rt.experiments.search.plan import SearchPlan
 from kurt2rt.experiments.search.trials import SearchTrials, run_trials
 from kurt2rt.experiments.study import provenance
+from kurt2rt.experiments.study.jobs import StudyError
 from kurt2rt.experiments.study.pool import PoolProgress, Waves, open_processes, run_missing
-from kurt2rt.experiments.study.results import StudyError
 from tests.experiments.search.tiny import tiny_plan
 from tests.experiments.study.here import HERE
 

@@ -3,9 +3,8 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.jobs import JobParts, Results
 from kurt2rt.experiments.study.pool import JobProcesses, PoolProgress, run_missing
-from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.study_plan import AboutT, StudyPlan
 from tests.experiments.helpers import ROBOT, STAGE
 

@@ -10,11 +10,16 @@ from kurt2rt.experiments.lockstep.batch_lesson import teach_in_batch
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import BatchDiffersError
 from kurt2rt.experiments.lockstep.lesson import GivenLesson
-from kurt2rt.experiments.study.bus_witness import BusWitnessJob, BusWitnessOutcome, require_no_difference
+from kurt2rt.experiments.study.jobs import Results, StudyError
 from kurt2rt.experiments.study.provenance import source_hash
-from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.experiments.study.seeds import make_plan, read_results
-from kurt2rt.experiments.study.study_plan import EngineRequest, StudyPlan
+from kurt2rt.experiments.study.study_plan import (
+    BusWitnessJob,
+    BusWitnessOutcome,
+    EngineRequest,
+    StudyPlan,
+    require_no_difference,
+)
 from tests.experiments.helpers import short_task
 from tests.experiments.study.here import carry_out, parts_in
 

@@ -9,7 +9,7 @@ from kurt2rt.experiments.lockstep.drive_row import ExamVerdict
 from kurt2rt.experiments.study import examination as module
 from kurt2rt.experiments.study.examination import Examiner
 from kurt2rt.experiments.study.seeds import make_plan
-from kurt2rt.experiments.study.targets import Verdict, needed_of, reasons_against_judging, targets_table
+from kurt2rt.experiments.study.table import Verdict, needed_of, reasons_against_judging, targets_table
 from tests.experiments.helpers import short_task
 from tests.experiments.rows import FAILED, NOT_JUDGED, PASSED, row
 from tests.experiments.study.here import parts_in

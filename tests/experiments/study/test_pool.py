@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from kurt2rt.experiments.study.jobs import Progress, Results, StoredJob
 from kurt2rt.experiments.study.pool import JobKilledError, PoolProgress, open_processes
 from kurt2rt.experiments.study.provenance import Provenance
-from kurt2rt.experiments.study.results import Progress, Results, StoredJob
 from tests.experiments.rows import MADE_OF
 
 RESULTS = Results(Path("never-made"))

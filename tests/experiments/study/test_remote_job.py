@@ -8,11 +8,10 @@ from typing import Any
 
 import pytest
 
-from kurt2rt.experiments.study.jobs import TaughtOutcome
+from kurt2rt.experiments.study.jobs import Progress, Results, StoredJob, TaughtOutcome
 from kurt2rt.experiments.study.pool import PoolProgress, run_missing
 from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.remote_job import WorkerDiffersError, pack, run_remote_job, unpack
-from kurt2rt.experiments.study.results import Progress, Results, StoredJob
 from tests.experiments.rows import MADE_OF, lesson
 from tests.experiments.study.here import HERE
 

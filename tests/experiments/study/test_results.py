@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.study.jobs import TaughtOutcome
+from kurt2rt.experiments.study.jobs import Progress, Results, StoredJob, StudyError, TaughtOutcome
 from kurt2rt.experiments.study.provenance import Provenance
-from kurt2rt.experiments.study.results import Progress, Results, StoredJob, StudyError
 from tests.experiments.rows import MADE_OF, lesson
 
 NOWHERE = Results(Path("never-made"))

@@ -3,8 +3,8 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.study.jobs import Results
 from kurt2rt.experiments.study.pool import open_processes, run_missing
-from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.seeds import forget_lost_robots, make_plan, read_results
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.journal.journal import Journal

@@ -10,7 +10,7 @@ from config.settings import SettingsError
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
 from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.experiments.study.examination import events_before_press
-from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.jobs import Results
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.transfer import (
     HomeJob,

@@ -40,8 +40,7 @@ from kurt2rt.core.teaching.commands import (
 )
 from kurt2rt.core.teaching.inbox import PairingRenewed
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.experiments.navigation.guided_tour import navigation_settings
-from kurt2rt.experiments.navigation.tour_guide import HOME, TourGuide
+from kurt2rt.experiments.navigation.guided_tour import HOME, TourGuide, navigation_settings
 from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder

@@ -1,1 +1,0 @@
-"""Certificate of a taught robot: the probability of collisions, of getting stuck and of questions."""
