@@ -82,11 +82,6 @@ def require_equal(task: TaskSettings, events: Sequence[TeachingEvent], runs: Seq
     assert driven(task, events, runs, Engine.COMPILED) == driven(task, events, runs, Engine.CAN)
 
 
-def test_drives_in_the_batch_are_those_of_the_bus(taught: Taught) -> None:
-    runs = [Run(1, "b"), Run(2, "rooms-SEED"), Run(3, "a"), Run(20_005, "c")]
-    require_equal(short_task(exam_s=SECONDS, stuck_after_s=SECONDS / 2), taught.events, runs)
-
-
 @pytest.mark.parametrize("name", ["streets", pytest.param("straight_on", marks=pytest.mark.deep)])
 def test_drives_in_streets_are_those_of_the_bus(name: str) -> None:
     times = {"supervised_s": SECONDS, "corrections_s": 2 * SECONDS}

@@ -92,13 +92,6 @@ def test_each_pupil_is_examined_after_presses_and_at_the_end(done: tuple[Row, ..
         assert all(len(each.drives) == 1 for each in outcome.checkpoints)
 
 
-def test_failure_of_a_learner_is_told_and_fails_the_exam(done: tuple[Row, ...]) -> None:
-    failed = outcome_of(done, BREAKING)
-    assert failed.failure == f"{BREAKING}: RuntimeError: four are too many"
-    assert [each.passed for each in failed.checkpoints][-1] is False
-    assert outcome_of(done, "weighted-vote").failure == ""
-
-
 Known = tuple[list[TeachingEvent], tuple[Label, ...]]
 
 

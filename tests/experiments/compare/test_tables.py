@@ -12,7 +12,6 @@ from kurt2rt.experiments.compare import (
     holm,
     mcnemar_p,
     paired_table,
-    pairs_of,
 )
 from kurt2rt.experiments.study.examination import Checkpoint
 from tests.experiments.compare.test_compare import AFTER, plan_for
@@ -99,9 +98,3 @@ def test_holm_multiplies_by_the_tests_left_and_never_falls() -> None:
     assert holm([0.01, 0.04, 0.03]) == pytest.approx([0.03, 0.06, 0.06])
     assert holm([0.5, 0.9]) == pytest.approx([1.0, 1.0])
     assert holm([]) == []
-
-
-def test_pairs_count_judged_robots_that_one_pupil_passes_with() -> None:
-    ours = [robot(1, "right"), robot(2, "right"), robot(3, "stuck"), robot(4, "not judged"), robot(5, "stuck")]
-    theirs = [robot(1, "stuck"), robot(2, "right"), robot(3, "right"), robot(4, "right"), robot(5, "stuck")]
-    assert pairs_of(ours, theirs) == (1, 1)

@@ -11,8 +11,6 @@ import yaml
 
 from config import CONFIG_DIR
 from config.settings import SettingsError
-from kurt2rt.core.task_settings import load_task, taught_by
-from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.paper.settings import QUICK, WHOLE, ExperimentSettings, Extent, PaperSettings, load_paper
 from kurt2rt.experiments.paper.study import GrowthJob, PaperExtent, Reading, TaughtJob, make_plan, unseen_of
 from kurt2rt.experiments.paper.tables import reasons_not_to_judge
@@ -52,26 +50,11 @@ def test_twenty_robots_share_all_generated_worlds(first: int) -> None:
     assert drives == {f"rooms-{number}": 1 for number in range(100, 130)}
 
 
-def test_more_robots_may_be_added_to_those_there_are() -> None:
-    extent = Extent(most_unseen=3)
-    few, more = (planned("wall_following", extent=extent, seeds=seeds) for seeds in ((100, 101), (102, 101, 100)))
-    assert {job.seed: job.worlds[-1] for job in few.of(TaughtJob)} == {100: "rooms-100", 101: "rooms-101"}
-    assert {(job.file, job.made_of) for job in few.of(TaughtJob)} < {(job.file, job.made_of) for job in more.jobs}
-
-
 def test_fig_2_is_drawn_where_its_task_is_taught() -> None:
     growth = planned("wall_following", extent=Extent(most_unseen=1, most_robots=2)).of(GrowthJob)
     assert [(job.radius, job.seed) for job in growth][:3] == [(150.0, 100), (150.0, 101), (200.0, 100)]
     assert all(job.task.teaching.corrections_s == 0.0 and job.robot_time_s == 600.0 for job in growth)
     assert planned("circle").of(GrowthJob) == ()
-
-
-def test_the_plain_reading_has_the_settings_of_its_own() -> None:
-    shipped, plain = planned("circle", readings=("shipped", "plain"), seeds=(100,)).of(TaughtJob)
-    ordinary = load_teacher("ordinary")
-    assert shipped.task == taught_by(load_task("circle"), ordinary)
-    assert plain.task == taught_by(load_task("circle", paper_defaults=True), ordinary)
-    assert plain.made_of.differences(shipped.made_of) == ["task"]
 
 
 def test_two_tasks_of_one_name_are_refused(tmp_path: Path) -> None:

@@ -45,13 +45,6 @@ def verdicts_of(table: Table) -> dict[str, tuple[str, ...]]:
     return {row[1]: row[2:] for row in table.rows}
 
 
-def test_knowledge_table_has_the_papers_numbers() -> None:
-    summary = summary_of("wall_following", [robot(seed, rlas, drive()) for seed, rlas in ((1, 80), (2, 90), (3, 99))])
-    table = table_of(summary, "What was taught")
-    assert table.rows == (("wall following", "90", "85 to 94.5", "91", "345", "345", "41", "52", "3"),)
-    assert "3 robots" in table.note
-
-
 def test_success_and_collisions_come_with_intervals() -> None:
     robots = [
         robot(1, 80, drive("a"), drive("b", passed=False, collisions=3)),
@@ -63,24 +56,6 @@ def test_success_and_collisions_come_with_intervals() -> None:
     assert a == ("wall following", "A", "3 of 3", "44% to 100%", "0", "0", "0.00", "0.00 to 2.46")
     # 3 collisions in 600 s: drawn robots alone have none, or 3 in 300 s; Poisson's upper end is 8.77.
     assert b == ("wall following", "B", "1 of 3", "6% to 79%", "1", "1", "3.00", "0.00 to 8.77")
-
-
-def test_exam_table_has_one_row_of_generated_worlds() -> None:
-    robots = [
-        robot(100, 80, drive("a"), drive("rooms-100"), drive("rooms-102", passed=False, stuck=True, duration_s=99.0)),
-        robot(101, 80, drive("a"), drive("rooms-101")),
-    ]
-    summary = summary_of("wall_following", robots)
-    *_, generated = table_of(summary, "Exams without").rows
-    assert generated[:3] == ("wall following", "3 of rooms-100..129", "2 of 3")
-
-
-def test_unseen_table_names_world_and_robot() -> None:
-    robots = [robot(seed, 80, *(drive(f"rooms-{room}") for room in range(seed, 130, 2))) for seed in (100, 101)]
-    rows = unseen_table(summary_of("wall_following", robots)).rows
-    assert len(rows) == 30
-    assert rows[0] == ("rooms-100", "100", "yes", "0", "8.0 of 9.0 laps", "")
-    assert [row[1] for row in rows[:4]] == ["100", "101", "100", "101"]
 
 
 def test_junctions_are_counted_over_all_robots() -> None:

@@ -40,13 +40,6 @@ CRITICS = [
 ]
 
 
-def test_the_share_that_was_asked_for_gets_another_action() -> None:
-    wrong = list(corrupt(system(*SET).rlas, ACTIONS, 0.18, seed=7, purpose="repair"))
-    assert len({each.rla_id for each in wrong}) == 9
-    assert all(each.action in ("back", "stand") and each.instead_of == "forward" for each in wrong)
-    system(*SET, *wrong)
-
-
 def test_corrupt_differs_by_purpose() -> None:
     rlas, steps = system(*SET).rlas, {step.name: step for step in steps_of(load_task("wall_following"))}
 
@@ -60,12 +53,6 @@ def test_corrupt_differs_by_purpose() -> None:
         assert len(shown) == len(examined) == 9
         assert len(shown & examined) <= 1  # what little is alike is so by chance
         assert examined == wrong_at(Step.SHUFFLED, seed) == wrong_at(Step.REWARDS, seed)
-
-
-def test_wrong_actions_are_motor_primitives_of_the_repertoire() -> None:
-    assert "spin_left" in primitive_speeds("basic")
-    assert "quarter_turn_left" not in primitive_speeds("basic")
-    assert len(primitive_speeds("basic")) == 14
 
 
 def test_critic_lessons_carry_its_agreement() -> None:

@@ -5,19 +5,10 @@ import pytest
 from config.settings import SettingsError
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.phases.steps import Step, steps_of
+from kurt2rt.experiments.phases.steps import steps_of
 
 TASK = load_task("wall_following")
 STEPS = {step.name: step for step in steps_of(TASK)}
-
-
-def test_blame_by_chance_waits_for_what_it_is_to_be_as_often_as() -> None:
-    chance, rewards = STEPS[Step.BLAME_BY_CHANCE], STEPS[Step.REWARDS]
-    assert chance.needs == (Step.PHASE_2, Step.REWARDS)
-    assert chance.plan is not None
-    assert rewards.plan is not None
-    assert chance.plan.times == rewards.plan.times  # the most that he may blame, too
-    assert chance.plan.signs == "chance"
 
 
 @pytest.mark.parametrize("name", ["wall_following", "fleeing", "eight"])

@@ -110,14 +110,6 @@ def test_interrupted_run_completes_to_equal_results(tiny: Tiny, tmp_path: Path) 
     assert read_study(plan).stages == tiny.study.stages
 
 
-def test_the_critic_is_judged_where_nothing_is_taught(tiny: Tiny) -> None:
-    (judged,) = tiny.study.stages[Step.JUDGED].rows
-    assert judged.teaching is None
-    assert judged.exams == ()
-    assert judged.rlas == tiny.study.stages[Step.CORRUPTED].rows[0].rlas
-    assert 0 < sum(each.ticks for each in judged.judgements) <= 100
-
-
 def test_missing_knowledge_and_results_are_named(tmp_path: Path) -> None:
     plan = tiny_plan(tmp_path)
     (job,) = [job for job in plan.jobs if job.file == file_of(Step.CORRUPTED)]

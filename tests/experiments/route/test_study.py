@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from matplotlib.image import imread
 
-from kurt2rt.core.rla.rla import MID, Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.route import study as module
 from kurt2rt.experiments.route.study import (
@@ -24,8 +24,6 @@ from kurt2rt.experiments.study.jobs import StudyError
 from kurt2rt.experiments.study.pool import PoolProgress
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.study.table import Told
-from kurt2rt.knowledge.journal.fold import fold_journal
-from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.study.here import carry_out, parts_in
 from tests.experiments.study.page import Page
 
@@ -71,16 +69,6 @@ def test_route_run_teaches_the_streets_once(done: Done) -> None:
     assert taught.lesson.teaching_s == 8.0
     assert taught.mid_rlas == taught.mid_asks > 0
     assert done.progress[-1].done_s == 10.0 + 8.0 + 3.0
-
-
-def test_route_run_stores_the_mid_level(done: Done) -> None:
-    job, outcome = done.plan.of(RouteJob)[0], done.outcomes[0]
-    with Journal.read_only(job.knowledge) as journal:
-        system = fold_journal(journal, job.task.learning.radius)
-        assert journal.binding.system == "streets"
-        assert journal.binding.levels[MID].feature_names[0] == "symbol 1"
-    assert (len(system.rlas_at(MID)), len(system.rlas)) == (outcome.mid_rlas, outcome.lesson.rlas)
-    assert system.knowledge_hash() == outcome.lesson.knowledge_hash
 
 
 def test_lesson_begun_again_goes_on_with_its_phases() -> None:

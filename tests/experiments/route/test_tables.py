@@ -57,14 +57,6 @@ def test_twenty_robots_are_judged_by_what_was_asked() -> None:
     assert column(asked, "verdict") == ["MISSED", "met", "met", "MISSED"]
 
 
-def test_each_layers_errors_are_counted_apart() -> None:
-    robots = [outcome(100, "basic", "basic", "mid"), outcome(101, "symbols", collisions=2), outcome(102, stuck=True)]
-    exams = titled(study([*robots, outcome(103)]), "Drives without")
-    assert [column(exams, layer) for layer in ("symbols", "mid", "basic")] == [["1"], ["1"], ["2"]]
-    assert column(exams, "without an error") == ["1 of 4"]
-    assert (column(exams, "collisions"), column(exams, "stuck")) == (["2"], ["1"])
-
-
 def test_errors_are_told_with_their_layer_time_and_place() -> None:
     wrong = outcome(1, "mid", collisions=1, stuck=True)
     told = errors_of(wrong).split(", ")

@@ -35,11 +35,3 @@ def test_highest_score_is_never_reached(robots: list[tuple[int, int]], data: st.
     scores = [robot(passed, presses) for passed, presses in robots]
     known = scores[: data.draw(st.integers(0, len(scores)))]
     assert score_of(scores, PRESSES) <= highest_score(known, 3 * len(scores))
-
-
-@examples(100)
-@given(st.lists(st.tuples(st.integers(0, 3), st.integers(0, 10_000)), min_size=2, max_size=2))
-def test_one_more_exam_outweighs_any_effort(robots: list[tuple[int, int]]) -> None:
-    (few, _), (more, _) = sorted(robots)
-    low, high = (score_of([robot(passed, presses)], PRESSES) for passed, presses in sorted(robots))
-    assert few == more or low < high

@@ -1,19 +1,16 @@
 """Choice of the engines that drive a study."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import pytest
 
 from hal.robot_settings import RobotSettings, load_robot
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.engine import ON_BUS, Engine, Engines
-from kurt2rt.experiments.paper.study import GrowthJob
 from kurt2rt.experiments.study.jobs import StudyJob
 from kurt2rt.experiments.study.seeds import make_plan
 from kurt2rt.experiments.study.study_plan import EngineRequest, StudyPlan
 from tests.experiments.helpers import ROBOT, short_task
-from tests.experiments.rows import MADE_OF
 from tests.experiments.study.here import parts_in
 
 IN_BATCH, AUTO = EngineRequest.COMPILED, EngineRequest.AUTO
@@ -33,15 +30,6 @@ def test_known_task_is_driven_in_the_batch_with_three_witnesses() -> None:
     plan = driven(jobs(20), IN_BATCH)
     assert {job.engines for job in plan.jobs} == {BOTH}
     assert (len(plan.witnesses), plan.refusals) == (3, ())
-
-
-def test_witnesses_are_one_percent_of_a_large_study() -> None:
-    one = GrowthJob(
-        **parts_in(), task=KNOWN, seed=0, made_of=MADE_OF, name="", stem="", robot_time_s=15.0, reading="shipped"
-    )
-    plan = driven([replace(one, seed=seed, stem=str(seed)) for seed in range(450)], IN_BATCH)
-    assert {job.engines.exams for job in plan.jobs} == {Engine.CAN}  # a curve of growth has no exam
-    assert len(plan.witnesses) == 5
 
 
 def test_unknown_task_goes_to_the_bus_and_is_named() -> None:

@@ -1,5 +1,4 @@
 import re
-from typing import Any
 
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.lesson import LessonCounts
@@ -10,7 +9,7 @@ from kurt2rt.experiments.study.exam_tables import (
 )
 from kurt2rt.experiments.study.jobs import ExaminedOutcome
 from tests.experiments.helpers import short_task
-from tests.experiments.rows import MADE_OF, judged, lesson, row
+from tests.experiments.rows import MADE_OF, judged, lesson
 
 
 def test_lesson_table_has_the_papers_numbers() -> None:
@@ -28,17 +27,6 @@ def test_exam_tables_show_drive_and_measures() -> None:
     assert measures.rows == (("distance error, m", "0.05"),)
     stuck = next(exam_tables([judged(stuck=True, duration_s=123.0), judged(alarm="bus lost")], short_task()))
     assert [row[4::2] for row in stuck.rows] == [("after 123 s", "no"), ("bus lost after 300 s", "no")]
-
-
-def test_exam_tables_mark_a_failed_teacher() -> None:
-    def told(**teacher: Any) -> str:
-        drive = judged().model_copy(update={"teacher": row(**{"progress": 9.0, **teacher})})
-        return next(exam_tables([drive], short_task())).rows[0][2]
-
-    assert told() == "9.00"
-    assert told(progress=-0.5) == "-0.50 (got nowhere)"
-    assert told(least_progress=9.0) == "9.00 (got nowhere)"
-    assert told(collisions=1) == told(alarm="bus lost") == told(stuck=True) == "9.00 (failed)"
 
 
 def robot(counts: LessonCounts, *drives: DriveRow) -> ExaminedOutcome:

@@ -5,14 +5,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.experiments.study.intervals import (
-    difference_of,
     fall_of,
     poisson_interval,
     quartiles,
     rate_of,
     wilson_interval,
 )
-from tests.examples import examples
 
 
 def test_rate_of_clustered_events_has_a_wider_interval() -> None:
@@ -32,25 +30,6 @@ def test_rate_of_clustered_events_has_a_wider_interval() -> None:
 def test_poissons_interval_is_garwoods(events: int, low: float, high: float) -> None:
     # As chi-square tables have it.
     assert poisson_interval(events) == pytest.approx((low, high), abs=1e-3)
-
-
-@examples(40)
-@given(st.lists(st.tuples(st.integers(0, 3), st.floats(0.1, 2.0)), min_size=2, max_size=20), st.data())
-def test_one_more_event_moves_both_ends_up_or_not_at_all(robots: list[tuple[int, float]], data: st.DataObject) -> None:
-    counts, exposures = [count for count, _ in robots], [exposure for _, exposure in robots]
-    rate = rate_of(counts, exposures)
-    counts[data.draw(st.integers(0, len(counts) - 1))] += 1
-    more = rate_of(counts, exposures)
-    assert more.low >= rate.low
-    assert more.high >= rate.high
-
-
-@examples(40)
-@given(st.lists(st.floats(-100, 100), min_size=2, max_size=20))
-def test_the_interval_of_a_change_turns_round_with_it(changes: list[float]) -> None:
-    there, back = difference_of(changes), difference_of([-change for change in changes])
-    assert there.low <= there.value <= there.high
-    assert (back.low, back.value, back.high) == pytest.approx((-there.high, -there.value, -there.low), abs=1e-9)
 
 
 def test_a_fall_is_told_with_an_interval_over_pairs() -> None:
@@ -73,17 +52,6 @@ def test_a_fall_is_told_with_an_interval_over_pairs() -> None:
 )
 def test_the_interval_of_a_share_is_wilsons(successes: int, trials: int, low: float, high: float) -> None:
     assert wilson_interval(successes, trials) == pytest.approx((low, high), abs=6e-5)
-
-
-@given(st.integers(1, 500).flatmap(lambda trials: st.tuples(st.integers(0, trials), st.just(trials))))
-def test_the_interval_holds_the_share_and_mirrors(counted: tuple[int, int]) -> None:
-    successes, trials = counted
-    low, high = wilson_interval(successes, trials)
-    share, rounding = successes / trials, 1e-12
-    assert 0.0 <= low <= share + rounding
-    assert share - rounding <= high <= 1.0
-    failures_low, failures_high = wilson_interval(trials - successes, trials)
-    assert (1 - high, 1 - low) == pytest.approx((failures_low, failures_high))
 
 
 @given(st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=50))

@@ -19,14 +19,6 @@ def fingerprints() -> Fingerprints:
     return Fingerprints(STAGE, ROBOT)
 
 
-def test_a_folder_of_another_python_is_gone_on_with(
-    fingerprints: Fingerprints, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    made = fingerprints.of(TASK, ("a",))
-    monkeypatch.setattr("platform.python_version", lambda: "3.99.0")
-    assert Fingerprints(STAGE, ROBOT).of(TASK, ("a",)) == made
-
-
 def test_a_change_in_the_file_of_a_mid_level_shows(tmp_path: Path) -> None:
     mine = tmp_path / "mine.yaml"
     shipped = (CONFIG_DIR / "mid_levels" / "places.yaml").read_text(encoding="utf-8")

@@ -20,7 +20,6 @@ from kurt2rt.experiments.transfer import (
     TransferOutcome,
     make_plan,
     read_study,
-    task_in,
     tell,
 )
 from kurt2rt.knowledge.journal.journal import Journal
@@ -100,12 +99,6 @@ def test_robot_that_was_not_taught_on_drives_at_home_as_before(done: Done) -> No
     outcome, (before,) = done.results.read(job, TransferOutcome), read_study(done.plan).home.rows
     assert outcome.lesson.presses == outcome.checkpoints[0].lessons == 0
     assert outcome.home == outcome.home_when_right == before.home
-
-
-def test_other_teacher_of_the_new_world_teaches_there() -> None:
-    task = task_in("rooms-1", short_task(), "slow")
-    assert (task.teaching.profile.name, task.teaching.world, task.exam.worlds) == ("slow", "rooms-1", ("rooms-1",))
-    assert task_in("rooms-1", short_task()).teaching.profile == short_task().teaching.profile
 
 
 def test_tables_and_figure_show_each_world(done: Done) -> None:
