@@ -195,7 +195,7 @@ async def match(bench: Bench) -> list[Row]:
         conditions = chance.uniform(0.0, 600.0, (rlas, 72))
         index, took_ns, brute_ns = ConditionIndex(72), [], []
         for condition in conditions:
-            index.append(tuple(condition.tolist()))
+            index.insert(len(index), tuple(condition.tolist()))
         for call in range(bench.count(calls)):
             # Near some condition, as the situations of a robot that knows its way are.
             situation = conditions[chance.integers(rlas)] + chance.normal(0.0, 20.0, 72)

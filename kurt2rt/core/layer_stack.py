@@ -47,7 +47,7 @@ class LayerStack:
                 blocking_cause = blocking_cause or _STANDS.get(navigator.standing_status)
             decision = self._decide_below(situation, readings, blocking_cause)
             decision = decision._replace(mid=commanded)
-        if navigator is not None and navigator.step is not None:
+        if navigator is not None:
             decision = decision._replace(plan=navigator.status)
         return decision
 

@@ -1,7 +1,5 @@
 """Autonomy: the critic's signals instead of a teacher's rewards (paper, phase 5)."""
 
-from typing import NamedTuple
-
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.critic.settings import ActivationSettings, CriticSettings
@@ -42,18 +40,6 @@ class ActivationMonitor:
             self.needed = True
 
 
-class Signal(NamedTuple):
-    """Critic's signal about one tick, like a teacher's reward."""
-
-    value: int
-    """-1 or +1."""
-    appraisal: str
-    tick: int
-    """Tick of the signal, which it is also about."""
-    trace_s: float
-    """Time constant of its eligibility trace."""
-
-
 class Autonomy:
     """Source of rewards in phase 5: opinions of a trusted and needed critic, at most as often as a person presses."""
 
@@ -73,11 +59,11 @@ class Autonomy:
         """Start phase 5: the critic is needed only after enough bad driving in this phase."""
         self.activation.reset()
 
-    def signal(self, tick: int, opinion: Opinion | None, driving: bool, *, listening: bool = False) -> Signal | None:
-        """Return the signal of this tick; call it in each tick of phase 5.
+    def speaks(self, tick: int, opinion: Opinion | None, driving: bool, *, listening: bool = False) -> bool:
+        """Return whether the opinion of this tick is a signal, like a reward; call it in each tick of phase 5.
 
-        Returns None if the critic is not trusted or not needed, if its opinion is not `patience_s` old (momentary
-        opinions are often chance), or if the last signal of this value is too recent.
+        False if the critic is not trusted or not needed, if its opinion is not `patience_s` old (momentary opinions are
+        often chance), or if the last signal of this value is too recent.
 
         Args:
             tick: number of this tick.
@@ -91,9 +77,9 @@ class Autonomy:
         self._last_tick = tick
         held = value != 0 and tick - self._since_tick >= self._patience_ticks
         self.activation.update(driving=driving, bad=held and value < 0)
-        if opinion is None or not held or listening or not self.activation.needed:
-            return None
-        if tick < self._next_tick[opinion.value] or not self._agreement.trusted:
-            return None
-        self._next_tick[opinion.value] = tick + self._every_ticks[opinion.value]
-        return Signal(opinion.value, opinion.appraisal, tick, opinion.trace_s)
+        if not held or listening or not self.activation.needed:
+            return False
+        if tick < self._next_tick[value] or not self._agreement.trusted:
+            return False
+        self._next_tick[value] = tick + self._every_ticks[value]
+        return True

@@ -78,10 +78,6 @@ class TopologicalMap:
         self._edges: dict[int, dict[int, Edge]] = {}
         """Edges by start and end."""
 
-    def add_place(self, place: Place) -> None:
-        """Add a place; edges to and from it are added by `add_edge`."""
-        self.places[place.place_id] = place
-
     def add_edge(self, edge: Edge) -> None:
         """Add an edge between two places; of parallel edges only the cheapest is kept."""
         edges = self._edges.setdefault(edge.start, {})
@@ -120,7 +116,7 @@ def build_map(
             yield
     home: dict[int, int] = {}
     for number, (at, group) in enumerate(members.items()):
-        result.add_place(Place(group[0].rla_id, at, tuple(group)))
+        result.places[group[0].rla_id] = Place(group[0].rla_id, at, tuple(group))
         home.update((rla.rla_id, group[0].rla_id) for rla in group)
         if number % _RLAS_PER_PIECE == 0:
             yield
@@ -158,7 +154,7 @@ def _end_of(
     there = group_at(expected.mean)
     if there:
         return home[there[0].rla_id]
-    result.add_place(Place(-rla.rla_id, tuple(expected.mean.tolist()), ()))
+    result.places[-rla.rla_id] = Place(-rla.rla_id, tuple(expected.mean.tolist()), ())
     return -rla.rla_id
 
 

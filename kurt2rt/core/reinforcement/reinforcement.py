@@ -13,7 +13,7 @@ from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.repair import OriginOf, Repair
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings, ValueSettings
-from kurt2rt.core.reinforcement.td_lambda import CreditUpdate, EligibilityTrace, TdLambda, make_trace
+from kurt2rt.core.reinforcement.td_lambda import EligibilityTrace, TdLambda, make_trace
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import (
     ActionReplaced,
@@ -65,8 +65,8 @@ class Reinforcement:
         self._repair.set_thresholds(self._value_settings)
         self._depths: dict[str, tuple[int, ...]] = {}
         """Command id of each reward -> depth of each credit, so that an undo subtracts it from the right action."""
-        self._autonomous_credits: dict[str, tuple[CreditUpdate, ...]] = {}
-        """Command id of each reward in this phase 5 -> its credits in the autonomous values."""
+        self._autonomous_credits: dict[str, list[tuple[Credit, int]]] = {}
+        """Command id of each reward in this phase 5 -> its credits in the autonomous values, with their depths."""
         self._since: dict[int, int] = {}
         """RLA id -> tick of this run in which it got its action."""
         self._punishments: list[_Punishment] = []
@@ -135,8 +135,9 @@ class Reinforcement:
                 self._depths[origin.command_id] = _depths(self.rule, event.credits)
                 self.rule.learn(value, trace)
                 if self._autonomous is not None:
-                    credits_alone = self._autonomous.credits_for(value, trace)
-                    self._autonomous_credits[origin.command_id] = _credit_updates(self._autonomous, credits_alone)
+                    alone = self._autonomous.credits_for(value, trace)
+                    depths = _depths(self._autonomous, alone)
+                    self._autonomous_credits[origin.command_id] = list(zip(alone, depths, strict=True))
                     self._autonomous.learn(value, trace)
                 self._add_punishment(value, trace, origin.command_id, origin.teacher)
             case LessonUndone(lesson, origin):
@@ -146,19 +147,17 @@ class Reinforcement:
             case _:
                 self._on_rla_changed(event, event.origin.tick)
 
-    def signal(self, value: int, tick: int, trace_s: float, *, signal: str, teacher: str) -> None:
+    def signal(self, value: int, tick: int, trace_s: float) -> None:
         """Learn from a critic's signal, which is no event and changes the autonomous values only.
 
         Args:
             value: -1 or +1.
             tick: stored tick that the signal is about.
             trace_s: time constant of the trace in s.
-            signal: prefix of the command ids of its repairs.
-            teacher: name that its repairs are recorded under.
         """
         trace = self._trace(tick, trace_s)
         self._active_rule.learn(value, trace)
-        self._add_punishment(value, trace, signal, teacher)
+        self._add_punishment(value, trace, CRITIC, CRITIC)
 
     def update(self, rla_id: int | None, tick: int) -> None:
         """Learn from a tick; `rla_id`: answering RLA, None at standstill or outside its radius."""
@@ -184,7 +183,7 @@ class Reinforcement:
             if isinstance(event, RlaRewarded):
                 self.rows += 1
                 depths = self._depths[event.origin.command_id] = _depths(self.rule, event.credits)
-                self.rule.apply_credits(map(CreditUpdate, event.credits, depths), 1)
+                self.rule.apply_credits(zip(event.credits, depths, strict=True), 1)
             else:
                 self.on_event(event)
 
@@ -238,7 +237,7 @@ class Reinforcement:
         assert record is not None
         match record.event:
             case RlaRewarded(credits=credits_):
-                self.rule.apply_credits(map(CreditUpdate, credits_, self._depths.pop(lesson)), -1)
+                self.rule.apply_credits(zip(credits_, self._depths.pop(lesson), strict=True), -1)
                 if self._autonomous is not None:
                     self._autonomous.apply_credits(self._autonomous_credits.pop(lesson, ()), -1)
                 self.choice.reset()
@@ -265,7 +264,7 @@ class Reinforcement:
         match record.event:
             case RlaRewarded(credits=credits_):
                 depths = self._depths[lesson] = _depths(self.rule, credits_)
-                self.rule.apply_credits(map(CreditUpdate, credits_, depths), 1)
+                self.rule.apply_credits(zip(credits_, depths, strict=True), 1)
                 self.choice.reset()
             case event:
                 self._on_rla_changed(event, origin.tick)
@@ -289,8 +288,3 @@ class Reinforcement:
 def _depths(account: TdLambda, credits_: Iterable[Credit]) -> tuple[int, ...]:
     """Return the depth of each credit: that of its RLA's present action."""
     return tuple(account.depth(credit.rla_id) for credit in credits_)
-
-
-def _credit_updates(account: TdLambda, credits_: Sequence[Credit]) -> tuple[CreditUpdate, ...]:
-    """Return credits with the depths of their RLAs' present actions."""
-    return tuple(map(CreditUpdate, credits_, _depths(account, credits_)))

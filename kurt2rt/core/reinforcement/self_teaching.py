@@ -12,7 +12,7 @@ from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.rla.events import LessonUndone, SituationNamed, TeachingEvent
 from kurt2rt.core.rla.lesson_history import rla_id_of
-from kurt2rt.core.rla.rla import AUTONOMOUS, BASIC, CRITIC, Phase, Rla
+from kurt2rt.core.rla.rla import AUTONOMOUS, BASIC, Phase, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import BEST_INCLUDES, BEST_SCORE, Statistics
 
@@ -97,9 +97,9 @@ class SelfTeaching:
 
     def signal(self, tick: int, decision: Decision, opinion: Opinion | None) -> None:
         """Learn from the critic's opinion of this tick as from a reward, except while measuring."""
-        signal = self._autonomy.signal(tick, opinion, driving=decision.answers, listening=self.is_measuring)
-        if signal is not None:
-            self._reinforcement.signal(signal.value, signal.tick, signal.trace_s, signal=CRITIC, teacher=CRITIC)
+        speaks = self._autonomy.speaks(tick, opinion, driving=decision.answers, listening=self.is_measuring)
+        if speaks and opinion is not None:
+            self._reinforcement.signal(opinion.value, tick, opinion.trace_s)
 
     def roll_back(self, tick: int, decision: Decision, opinion: Opinion | None) -> Iterator[LessonUndone]:
         """Count the tick; after a bad window, yield the undos; apply each before requesting the next.

@@ -9,7 +9,6 @@ autonomous phases, which have separate values.
 
 import math
 from collections.abc import Collection, Iterable, Mapping
-from typing import NamedTuple
 
 import numpy as np
 
@@ -113,14 +112,6 @@ class ValueHistory:
             self.present[rla_id] = earned
 
 
-class CreditUpdate(NamedTuple):
-    """Credit with the action of its RLA that it belongs to."""
-
-    credit: Credit
-    depth: int
-    """Result of `depth` when the reward was given."""
-
-
 class TdLambda:
     """Learning rule of phase 3: values of RLAs, by the formulas above this module (Sutton 1988; paper, section IV.C).
 
@@ -171,8 +162,11 @@ class TdLambda:
         for rla_id, change in self.credits_for(value, trace):
             self._add(rla_id, change)
 
-    def apply_credits(self, updates: Iterable[CreditUpdate], sign: int) -> None:
-        """Add credits of the journal to values (`sign` +1), or subtract them from existing values (-1)."""
+    def apply_credits(self, updates: Iterable[tuple[Credit, int]], sign: int) -> None:
+        """Add credits of the journal to values (`sign` +1), or subtract them from existing values (-1).
+
+        `updates`: each credit with the result of `depth` when the reward was given.
+        """
         for (rla_id, change), depth in updates:
             earned = self._history.get(rla_id, depth)
             if earned is not None or sign > 0:

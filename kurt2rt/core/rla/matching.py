@@ -168,10 +168,6 @@ class ConditionIndex:
     def __len__(self) -> int:
         return self._count
 
-    def append(self, condition: tuple[float, ...] | NDArray[np.float64]) -> None:
-        """Append a condition (d,). Raises ValueError for a wrong length or a number that is not finite."""
-        self.insert(self._count, condition)
-
     def insert(self, position: int, condition: tuple[float, ...] | NDArray[np.float64]) -> None:
         """Insert a condition (d,) before the one at `position`.
 
@@ -318,10 +314,6 @@ class SymbolIndex:
 
     def __len__(self) -> int:
         return len(self._rows)
-
-    def append(self, condition: tuple[float, ...] | NDArray[np.float64]) -> None:
-        """Append a condition of symbols (d,). Raises ValueError for a wrong length or a number that is not finite."""
-        self.insert(len(self), condition)
 
     def insert(self, position: int, condition: tuple[float, ...] | NDArray[np.float64]) -> None:
         """Insert a condition (d,) before the one at `position`.

@@ -213,7 +213,7 @@ class RlaSystem(ActiveRlas):
             case RlaDeleted(_, origin):
                 self._add(self._deleted.pop(origin.command_id))
             case RlaRewarded(rla_id, value):
-                self._rewards.remove(rla_id, value)
+                self._rewards.add(rla_id, value, -1)
             case SituationNamed():
                 self._names.remove(lesson)
 

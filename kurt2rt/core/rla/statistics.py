@@ -1,5 +1,6 @@
 """Statistics of use: unlike a lesson, the last second of them may be lost. Rewards, appraisals, expectations."""
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -102,22 +103,12 @@ class RewardCounts:
     """Appraisals of all RLAs, by id."""
 
     def __init__(self) -> None:
-        self._appraisals: dict[int, Appraisal] = {}
+        self._counts: Counter[tuple[int, bool]] = Counter()
 
     def get(self, rla_id: int) -> Appraisal:
         """Return the numbers of an RLA; zeros without rewards."""
-        return self._appraisals.get(rla_id, Appraisal())
+        return Appraisal(self._counts[rla_id, True], self._counts[rla_id, False])
 
-    def add(self, rla_id: int, value: int) -> None:
-        """Count one reward; `value` is -1 or +1."""
-        self._count(rla_id, value, 1)
-
-    def remove(self, rla_id: int, value: int) -> None:
-        """Subtract one reward that was undone; `value` is -1 or +1."""
-        self._count(rla_id, value, -1)
-
-    def _count(self, rla_id: int, value: int, step: int) -> None:
-        rewards, punishments = self.get(rla_id)
-        self._appraisals[rla_id] = (
-            Appraisal(rewards + step, punishments) if value > 0 else Appraisal(rewards, punishments + step)
-        )
+    def add(self, rla_id: int, value: int, times: int = 1) -> None:
+        """Count one reward; `value` is -1 or +1, `times` -1 for a reward that was undone."""
+        self._counts[rla_id, value > 0] += times

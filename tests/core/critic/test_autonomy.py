@@ -26,8 +26,8 @@ def agreement(*, trusted: bool = True) -> Agreement:
 def test_autonomy_untrusted_no_signal() -> None:
     heard = agreement(trusted=False)
     speaking = Autonomy(RATES, heard, 0.01)
-    assert speaking.signal(1, BAD, True) is None
+    assert not speaking.speaks(1, BAD, True)
     heard.on_event(Appraised("good", 1, 0, origin()))
-    assert speaking.signal(2, BAD, True) is not None
+    assert speaking.speaks(2, BAD, True)
     heard.replay([appraisal(1, "bad"), RlaRewarded(9, -1, 0, origin(), said=1)])
-    assert speaking.signal(300, BAD, True) is None
+    assert not speaking.speaks(300, BAD, True)

@@ -79,7 +79,7 @@ def test_plan_is_that_of_networkx_ties_included(seed: int) -> None:
     random, chart = np.random.default_rng(seed), TopologicalMap()
     graph: nx.DiGraph[int] = nx.DiGraph()
     for place in range(12):
-        chart.add_place(Place(place, (), ()))
+        chart.places[place] = Place(place, (), ())
         graph.add_node(place)
     for number, (start, end, ticks) in enumerate(random.integers(1, 12, size=(40, 3)).tolist()):
         edge = Edge(number, "forward", start, end, 0.3, ticks // 3)

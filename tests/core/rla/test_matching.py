@@ -17,7 +17,7 @@ Point = tuple[float, ...]
 def index_of(conditions: list[Point]) -> ConditionIndex:
     index = ConditionIndex(len(conditions[0]))
     for condition in conditions:
-        index.append(condition)
+        index.insert(len(index), condition)
     return index
 
 
@@ -154,7 +154,7 @@ def test_condition_index_5000_clusters_equal_brute_force(spread: float) -> None:
 def test_condition_index_unfit_condition_is_refused(condition: Point, problem: str) -> None:
     index = index_of([(1.0, 2.0)])
     with pytest.raises(ValueError, match=problem):
-        index.append(condition)
+        index.insert(len(index), condition)
     assert len(index) == 1
     assert_right(index, np.array([[1.0, 2.0]]), np.array([1.0, 2.5]))
 

@@ -27,7 +27,7 @@ HISTORIES = st.integers(1, 13).flatmap(
 def index_of(histories: list[Symbols]) -> SymbolIndex:
     index = SymbolIndex(len(histories[0]))
     for each in histories:
-        index.append(each)
+        index.insert(len(index), each)
     return index
 
 
@@ -50,7 +50,7 @@ def test_symbol_index_equal_distance_oldest_wins(histories: list[Symbols]) -> No
 def test_symbol_index_unfit_condition_is_refused(condition: Symbols, told: str) -> None:
     index = index_of([(1.0, 1.0)])
     with pytest.raises(ValueError, match=told):
-        index.append(condition)
+        index.insert(len(index), condition)
     assert len(index) == 1
 
 
