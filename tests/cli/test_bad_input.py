@@ -77,13 +77,6 @@ def test_writer_below_a_file_is_refused_and_keeps_it(
     assert (tmp_path / "letter.txt").read_text(encoding="utf-8") == NOT_OURS
 
 
-@pytest.mark.parametrize("command", ["demo", "train"])
-def test_out_that_is_a_file_is_refused_and_keeps_it(kurt2rt: CommandLine, tmp_path: Path, command: str) -> None:
-    (tmp_path / "out").write_text(NOT_OURS, encoding="utf-8")
-    assert "out" in kurt2rt.refused(command, "--out", tmp_path / "out")
-    assert (tmp_path / "out").read_text(encoding="utf-8") == NOT_OURS
-
-
 def other_features(folder: Path) -> Path:
     """Return the task with a shorter history in its situation."""
     situation = changed("situations", "basic", folder, lambda content: content.update(history_steps=500))
@@ -225,11 +218,6 @@ def test_a_damaged_lesson_is_named_and_the_rest_is_kept(kurt2rt: CommandLine, tm
     said = kurt2rt("knowledge", "check", mine)
     assert said.exit_code == 1
     assert len(said.out.splitlines()) == image.count(b'"teacher":"scripted teacher"')
-
-
-def test_graph_of_a_file_name_that_is_no_utf8_is_drawn(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
-    mine = copied(lessons, tmp_path / "taught-\udcff.knowledge")
-    assert kurt2rt("knowledge", "graph", mine, "--out", "network.svg").exit_code == 0
 
 
 @pytest.mark.parametrize("command", ["demo", "train", "run", "study compare", "study transfer"])

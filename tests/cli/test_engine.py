@@ -11,13 +11,6 @@ def test_train_refuses_a_batch_of_one_robot(kurt2rt: CommandLine) -> None:
     assert "give --seeds" in kurt2rt.refused("train", *SHORT, "--engine", "compiled")
 
 
-def test_train_of_an_unknown_task_goes_to_the_bus_and_says_so(kurt2rt: CommandLine) -> None:
-    asks = ("--set", "learning.doubt.asks=true", "--engine", "compiled")
-    told = kurt2rt("train", *SHORT, "--seeds", "1", "--jobs", "1", *asks)
-    assert told.exit_code == 0, told.err
-    assert "wall_following: lessons on the CAN bus, because a batch does not know a robot that asks" in told.err
-
-
 def test_train_goes_on_in_no_folder_in_which_a_witness_differs(kurt2rt: CommandLine) -> None:
     words = ("train", *SHORT, "--seeds", "1", "--jobs", "1", "--engine", "compiled")
     assert kurt2rt(*words).exit_code == 0

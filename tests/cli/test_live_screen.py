@@ -11,7 +11,7 @@ from rich.console import Console
 
 from kurt2rt.channel.security.pairing import pair
 from kurt2rt.cli.live_screen import LiveScreen
-from kurt2rt.cli.terminal_screen import has_desktop, open_link
+from kurt2rt.cli.terminal_screen import has_desktop
 from kurt2rt.core.teaching.question import Question
 from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages
 from tests.cli.pseudo_terminal import ProgramInTerminal, Terminal
@@ -75,12 +75,6 @@ def test_show_long_status_keeps_the_code_in_24_lines() -> None:
         assert len(lines) <= 24
 
 
-def test_show_unreachable_phone_has_no_code_and_a_reason() -> None:
-    shown = Shown()
-    shown.screen.pin(ServedPages((LOCAL,), network=True, trouble="no phone can reach this machine"))
-    assert shown.lines()[-2:] == [f"page  {LOCAL.link}", "! no phone can reach this machine"]
-
-
 def test_a_low_window_says_how_high_it_has_to_be() -> None:
     shown = Shown(height=20)
     shown.screen.pin(ServedPages((LOCAL, PHONE), network=True, trouble=""))
@@ -133,9 +127,3 @@ def test_run_at_a_terminal_pins_page_and_code(tmp_path: Path) -> None:
 )
 def test_a_desktop_is_a_display_of_this_machine(environment: dict[str, str], *, there: bool) -> None:
     assert has_desktop(environment) is there
-
-
-def test_without_a_program_that_opens_links_nothing_is_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PATH", str(tmp_path))
-    assert open_link(LOCAL.link, tmp_path) is False
-    assert list(tmp_path.iterdir()) == []

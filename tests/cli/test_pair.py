@@ -87,8 +87,3 @@ def test_the_list_tells_who_is_paired_and_where_the_device_is(kurt2rt: CommandLi
 def test_pair_invalid_name_is_refused(kurt2rt: CommandLine, name: str) -> None:
     assert kurt2rt.refused("pair", name)
     assert not DEVICES.exists()
-
-
-@pytest.mark.parametrize(("words", "why"), [((), "NAME"), (("phone", "--renew", "--revoke"), "--renew, --revoke")])
-def test_pair_contradicting_options_are_refused(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
-    assert why in kurt2rt.misused("pair", *words)

@@ -66,10 +66,5 @@ def test_other_knowledge_looks_on(kurt2rt: CommandLine, tmp_path: Path, short: P
     )
 
 
-def test_no_run_and_no_knowledge_are_refused_in_a_line(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    assert str(tmp_path) in kurt2rt.refused("replay", "--runs", tmp_path)
-    assert "nothing.knowledge" in kurt2rt.refused("replay", WALLS, "--compare", tmp_path / "nothing.knowledge")
-
-
 def _teaches_nothing(*_: object) -> LessonResult:
     return LessonResult(Outcome(ResultCode.REPEATED))

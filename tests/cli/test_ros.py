@@ -32,11 +32,6 @@ def test_ros_names_that_cannot_be_are_refused(kurt2rt: CommandLine, words: tuple
     assert says in kurt2rt.misused("ros", *words)
 
 
-def test_place_to_listen_that_cannot_be_had_is_refused(kurt2rt: CommandLine) -> None:
-    kurt2rt("pair", "ros")
-    assert "give another locator" in kurt2rt.refused("ros", "--listen", "tcp/192.0.2.1:7447")
-
-
 @pytest.mark.deep
 def test_device_waits_for_robot_and_router_and_serves_them(kurt2rt: CommandLine, tmp_path: Path) -> None:
     kurt2rt("pair", "ros")

@@ -81,10 +81,6 @@ def test_the_page_behind_a_proxy_is_opened_at_the_proxys_address(tmp_path: Path)
         assert page.end(signal.SIGTERM).err == ""
 
 
-def test_a_public_address_without_tls_is_refused(kurt2rt: CommandLine) -> None:
-    assert "https://" in kurt2rt.refused("teach", "--public-address", "http://robot.example")
-
-
 def limit_files(program: Running, size_bytes: int) -> None:
     """Limit the size of that program's files, so that writes fail as on a full disk."""
     resource.prlimit(program.process.pid, resource.RLIMIT_FSIZE, (size_bytes, resource.RLIM_INFINITY))
@@ -153,10 +149,6 @@ def test_run_without_a_teacher_selects_the_named_behaviour(kurt2rt: CommandLine)
     refused = kurt2rt.misused(*words, "--behaviour", "fly")
     assert "'fly'" in refused
     assert ": straight_on, turn_left, turn_right" in refused
-
-
-def test_can_log_of_no_known_kind_is_refused(kurt2rt: CommandLine) -> None:
-    assert "drive.doc: " in kurt2rt.refused("run", "--can-log", "drive.doc")
 
 
 @pytest.mark.deep

@@ -53,17 +53,6 @@ def test_a_live_view_needs_no_recording(kurt2rt: CommandLine, folder: Path) -> N
     assert not (folder / "var").exists()
 
 
-@pytest.mark.parametrize(
-    ("words", "why"),
-    [
-        (("--record", "elsewhere", "--no-record"), "--no-record"),
-        (("--live-view", "robot"), "HOST:PORT"),
-    ],
-)
-def test_record_options_that_contradict_are_misuse(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
-    assert why in kurt2rt.misused(*WORDS, *words)
-
-
 def test_a_folder_that_cannot_be_made_costs_no_tick_and_is_told(kurt2rt: CommandLine, folder: Path) -> None:
     (folder / "runs").write_text("a file", encoding="utf-8")
     said = kurt2rt(*WORDS, "--record", "runs")

@@ -49,13 +49,6 @@ def test_page_line_tells_each_address_once() -> None:
     assert shown.screen.links == (LOCAL.link, PHONE.link)
 
 
-def test_page_line_that_is_no_address_is_printed() -> None:
-    shown = Shown()
-    shown.screen.page_line("a word of some library")
-    assert shown.lines() == ["a word of some library"]
-    assert shown.screen.links == ()
-
-
 def test_show_in_a_log_prints_changes_other_than_numbers(status: ProgramStatus) -> None:
     shown = Shown(as_service=True)
     shown.screen.show_status(status, WELL, "")
@@ -67,9 +60,3 @@ def test_show_in_a_log_prints_changes_other_than_numbers(status: ProgramStatus) 
     assert len(shown.lines()) == 1
     shown.screen.show_status(status, WELL, "")
     assert len(shown.lines()) == 1
-
-
-def test_taught_on_a_stream_prints_nothing() -> None:
-    shown = Shown()
-    shown.screen.lesson_saved("RLA 1: forward")
-    assert shown.lines() == []

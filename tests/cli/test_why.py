@@ -63,10 +63,6 @@ def test_why_with_contradictory_options_is_refused_unread(kurt2rt: CommandLine, 
         assert said in kurt2rt.misused("why", tmp_path / "none.mcap", *words)
 
 
-def test_why_without_a_recorded_run_is_refused(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    assert str(tmp_path) in kurt2rt.refused("why", "--runs", tmp_path)
-
-
 def test_why_live_asks_a_running_robot_as_an_onlooker(
     kurt2rt: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,8 +1,6 @@
 """Streams: what a bad teacher, bad sensors, bad clocks and a bad bus do to a guard, tick by tick, drawn in bulk."""
 
-import dataclasses
 from dataclasses import dataclass
-from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,15 +57,6 @@ class Streams:
         """Streams and ticks."""
         streams, ticks = self.now_s.shape
         return streams, ticks
-
-    def only(self, stream: int, ticks: NDArray[np.intp]) -> Self:
-        """One stream, and of it the ticks named by number."""
-        values: dict[str, Any] = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
-        cut: dict[str, Any] = {
-            name: value[stream : stream + 1, ticks] if isinstance(value, np.ndarray) else value
-            for name, value in values.items()
-        }
-        return type(self)(**cut)
 
 
 @np.errstate(invalid="ignore", over="ignore")  # none of a time less none of an age is meant

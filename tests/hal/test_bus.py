@@ -54,17 +54,6 @@ def test_a_burst_is_as_so_many_single_frames(ends: Ends) -> None:
     assert robot_end.drain() == []
 
 
-def test_in_process_bus_holds_4096_frames_per_end(ends: Ends) -> None:
-    robot_end, far_end = ends
-    port = far_end.telemetry_port()
-    frame = CODEC.message("ENCODER").pack(1, 1)
-    for _ in range(4096):
-        port.send(frame)
-    with pytest.raises(BusError, match="sending failed"):
-        port.send(frame)
-    assert len(robot_end.drain()) == 4096
-
-
 def test_any_other_listener_of_python_can_hears_the_same_frames(ends: Ends) -> None:
     robot_end, far_end = ends
     channel = robot_end.name.partition(":")[2]

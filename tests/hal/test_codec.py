@@ -85,14 +85,6 @@ def test_every_message_of_the_reference_is_there() -> None:
     assert CODEC.message("BDC12_15").signals == ("BDC12", "BDC13", "BDC14", "BDC15")
 
 
-def test_cantools_shows_physical_values() -> None:
-    tilt: Any = DATABASE.decode_message("TILT_COMP", bytes.fromhex("8F5C800000000000"))
-    assert tilt["TILT_LEFT_RIGHT"] == pytest.approx(1.0)
-    assert tilt["TILT_FRONT_BACK"] == pytest.approx(0.0, abs=1e-9)
-    gyro: Any = DATABASE.decode_message("GYRO_MC2", (4992511).to_bytes(4, "big") + (5000).to_bytes(4, "big"))
-    assert gyro == {"ANGLE": pytest.approx(1.0), "VARIANCE": pytest.approx(0.5)}
-
-
 def test_a_message_that_is_not_there_is_named() -> None:
     with pytest.raises(CodecError, match=r"kurt2\.dbc: .*CONTROL.*INFO_1"):
         CODEC.message("CONTROL")

@@ -197,19 +197,6 @@ def test_refused_frame_is_not_the_first_since_forgetting(end: HeldEnd, bus: CanB
     assert port.unconfirmed == 0
 
 
-def test_frames_forgotten_twice_confirm_nothing(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
-    port.send(encode_brake())
-    port.forget_unconfirmed()
-    port.forget_unconfirmed()
-    port.send(SLOW)
-    end.carry()
-    bus.drain()
-    assert port.unconfirmed == 1
-    end.carry()
-    bus.drain()
-    assert port.unconfirmed == 0
-
-
 @pytest.mark.parametrize("happens", ["restarted", "lost", "reopened"])
 def test_controller_reset_ends_the_wait_for_forgotten_frames(
     end: HeldEnd, bus: CanBus, port: FramePort, happens: str
@@ -233,14 +220,3 @@ def test_controller_reset_ends_the_wait_for_forgotten_frames(
     end.carry()
     bus.drain()
     assert port.unconfirmed == 0
-
-
-def test_a_bus_that_was_opened_anew_begins_at_none(bus: CanBus, port: FramePort) -> None:
-    port.send(encode_brake())
-    bus.reopen()
-    assert port.unconfirmed == 0
-
-
-def test_a_filter_always_lets_confirmations_through(bus: CanBus) -> None:
-    bus.set_id_filter({0x09})
-    bus.reopen()

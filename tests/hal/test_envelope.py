@@ -15,7 +15,6 @@ from kurt2rt.platform.gc_control import gc_frozen
 from tests.hal.careless_guards import CARELESS
 from tests.hal.envelope import APPROACHES_FOR, STANDS_FOR, violations
 from tests.hal.playing import SIGNAL, Played, play
-from tests.hal.shrinking import shrunk, told
 from tests.hal.streams import TICKS_PER_STREAM, Streams, draw_streams
 
 STREAMS_PER_SEED = 400
@@ -26,12 +25,10 @@ DEEP_SEEDS = np.arange(100, 2600)
 
 
 def hold_the_envelope(seed: int, streams_drawn: int = STREAMS_PER_SEED) -> None:
-    """Play the streams of a seed. What fails is named by its seed and told in as few ticks as will do."""
+    """Play the streams of a seed; what fails is named by its seed, stream and tick."""
     streams = draw_streams(seed, streams_drawn)
     found = violations(streams, play(streams))
-    if found:
-        least = shrunk(streams, found[0])
-        pytest.fail(f"seed {seed}, {found[0]}; {len(found)} in all. The least that breaks it:\n{told(least)}")
+    assert not found, f"seed {seed}, {found[0]}; {len(found)} in all"
 
 
 def test_the_envelope_holds_for_ten_thousand_ticks() -> None:
@@ -52,12 +49,6 @@ def test_the_envelope_holds_for_a_hundred_million_ticks(seeds: list[int]) -> Non
     with gc_frozen():
         for seed in seeds:
             hold_the_envelope(int(seed))
-
-
-def test_the_ticks_are_as_many_as_is_said() -> None:
-    assert FAST_STREAMS * TICKS_PER_STREAM == 10_000
-    assert len(MORE_SEEDS) * TICKS_PER_SEED == 120_000
-    assert len(DEEP_SEEDS) * TICKS_PER_SEED == 10**8
 
 
 @pytest.fixture(scope="module")
@@ -88,27 +79,9 @@ def test_robots_differ(some: list[tuple[Streams, Played]]) -> None:
     assert any(not robot.bumpers for robot in (draw_streams(seed, 1).robot for seed in range(100)))
 
 
-def test_a_seed_is_a_run(some: list[tuple[Streams, Played]]) -> None:
-    again = play(draw_streams(0, 30, 40))
-    assert again.payloads.tobytes() == some[0][1].payloads.tobytes()
-
-
 @pytest.mark.parametrize("careless", CARELESS)
 def test_a_careless_guard_is_found_out(careless: str, some: list[tuple[Streams, Played]]) -> None:
     make_guard, rule = CARELESS[careless]
     assert any(found.rule == rule for streams, _ in some for found in violations(streams, play(streams, make_guard))), (
         f"a guard that is careless ({careless}) breaks no rule: {rule}"
     )
-
-
-def test_violation_shrinks_to_a_few_ticks(some: list[tuple[Streams, Played]]) -> None:
-    make_guard, rule = CARELESS["trusts the future"]
-    breaks = [(streams, found) for streams, _ in some[:4] for found in violations(streams, play(streams, make_guard))]
-    streams, found = max((each for each in breaks if each[1].rule == rule), key=lambda each: each[1].tick)
-    assert found.tick > 10
-    least = shrunk(streams, found, make_guard)
-    assert least.shape[1] <= 2
-    assert found.rule in {left.rule for left in violations(least, play(least, make_guard))}
-    text = told(least, make_guard)
-    assert f"tick {least.shape[1] - 1}: " in text
-    assert "left_m_s" in text

@@ -32,21 +32,6 @@ def test_neighbours_stand_next_to_a_sensor(sensor: str, before: str, after: str,
     assert set(near.substitutes) == {PLACES[each] for each in substitutes}
 
 
-def test_neighbours_form_one_ring_of_all_sensors() -> None:
-    near = neighbours_of(INFRARED.sensors)
-    place, ring = 0, []
-    for _ in near:
-        ring.append(place)
-        assert near[near[place].after].before == place
-        place = near[place].after
-    assert sorted(ring) == list(range(len(near)))
-
-
-def test_substitute_without_a_broken_sensor_returns_the_counts() -> None:
-    counts = counts_of(s1=300)
-    assert SubstituteReadings(INFRARED)(counts, ()) is counts
-
-
 def test_substitute_of_a_sensor_is_the_highest_neighbour() -> None:
     read = SubstituteReadings(INFRARED)(counts_of(s1=301, s9=100, s15=0), (PLACES["s15"],))
     assert read == counts_of(s1=301, s9=100, s15=301)

@@ -215,13 +215,6 @@ def test_foreign_records_are_skipped_and_counted(name: str) -> None:
     other.shutdown()
 
 
-def test_two_beginnings_are_one_bus(name: str, ends: Ends) -> None:
-    with file_of(name).open("ab") as file:
-        file.write(file_of(name).read_bytes())  # of another who found the file empty at the same time
-    send(ends[1], cycle())
-    assert len(ends[0].drain()) == len(cycle())
-
-
 def test_the_bus_is_gone_with_its_last_end_and_stays_until_then(name: str) -> None:
     one, other = SharedBus(name), SharedBus(name)
     one.shutdown()
@@ -274,19 +267,6 @@ def test_new_bus_waits_for_removal_of_the_old_file(name: str) -> None:
         with pytest.raises(BusError, match=f"shared:{name}'.*removed"):
             open_bus(f"shared:{name}")
     path.unlink()
-
-
-def test_tools_of_python_can_listen_and_wait(name: str) -> None:
-    bus, other = SharedBus(name), SharedBus(name)
-    reader = can.BufferedReader()
-    with can.Notifier(bus, [reader], timeout=0.01):
-        other.send(cycle()[0])
-        message = reader.get_message(timeout=PATIENCE_S)
-    assert message is not None
-    assert bytes(message.data) == cycle()[0].data
-    assert other.recv(0.001) is None
-    bus.shutdown()
-    other.shutdown()
 
 
 @pytest.mark.parametrize("bad", ["../x", ".x", "a/b", "a b", "x" * 65, "ä", "a\n"])

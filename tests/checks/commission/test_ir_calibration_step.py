@@ -26,15 +26,6 @@ def readings(law: IrLaw, noise: float = 0.0, seed: int = 1) -> list[IrReading]:
 # The fit
 
 
-def test_exact_readings_give_the_law_back() -> None:
-    fit = fit_law(readings(USUAL))
-    assert fit.law.numerator_counts_m == pytest.approx(86.016, rel=0.01)
-    assert fit.law.offset_m == pytest.approx(0.04, abs=0.001)
-    assert fit.law.bias_counts == pytest.approx(64.4, abs=2.0)
-    assert fit.outliers == ()
-    assert max(map(abs, fit.residuals)) < 0.5
-
-
 @pytest.mark.parametrize(
     ("taken", "code", "fields"),
     [

@@ -45,18 +45,6 @@ async def test_keyboard_discards_input_typed_before_the_question() -> None:
     os.close(person)
 
 
-async def test_keyboard_wait_does_not_block_the_event_loop() -> None:
-    reading, writing = os.pipe()
-    with os.fdopen(reading) as lines:
-        keyboard = Keyboard(lines)
-        with anyio.move_on_after(0.01) as waiting:
-            await keyboard.line()
-        assert waiting.cancelled_caught
-        os.write(writing, b"late\n")
-        assert await keyboard.line() == "late"
-    os.close(writing)
-
-
 async def test_console_operator_repeats_questions_and_labels_lines() -> None:
     screen = io.StringIO()
     person = ConsoleOperator(io.StringIO("maybe\n S \n"), Console(file=screen, no_color=True, width=200))

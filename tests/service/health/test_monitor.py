@@ -88,15 +88,6 @@ def test_a_report_is_made_once_a_second_and_told_after_a_tick(robot: Robot) -> N
     assert len(robot.heard) == 1
 
 
-def test_sensors_that_were_never_heard_have_no_age(robot: Robot) -> None:
-    robot.desk.robot.infrared_age_s = float("inf")
-    robot.tick()
-    report = robot.report()
-    assert report.ages.infrared_s is None
-    assert report.ages.bumpers_s == 0.0
-    assert [each.about for each in report.troubles if each.urgent][:1] == ["sensors"]
-
-
 def test_the_battery_is_the_machines_own_and_of_two_the_emptier(tmp_path: Path) -> None:
     assert battery_of(tmp_path) == (None, False)
     for name, kind, scope, percent, status in (
