@@ -4,7 +4,6 @@ import base64
 import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +11,10 @@ from behaviors.repertoire_settings import RepertoireSettings, TaskAction, Taught
 from config.settings import Settings, load_settings
 from config.settings_files import FILES, find_beside, find_config, kept_name
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Expectation, Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.knowledge.exchange.json_checks import require_int, require_number, require_text
-from kurt2rt.knowledge.journal.entry import StoredEntry
+from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
 from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -30,19 +28,10 @@ _ABSENT = (None, [""])
 """Values of a key that was left out: nothing, and the one behaviour without a name."""
 
 
-@dataclass(frozen=True, slots=True)
-class KnownLesson:
-    """A teaching event that was there when the run began."""
-
-    event: TeachingEvent
-    stamped_at: str
-    """UTC, ISO 8601; empty if it is unknown."""
-
-
 def collect_attachments(
     robot: RobotSettings,
     task: TaskSettings,
-    entries: Iterable[StoredEntry | KnownLesson] = (),
+    entries: Iterable[StoredEntry | JournalEntry] = (),
     saved: Statistics | None = None,
 ) -> dict[str, bytes]:
     """Return all attachments of a run by name; call it before the first tick.
@@ -74,14 +63,14 @@ def hash_attachments(attached: Mapping[str, bytes]) -> dict[str, str]:
     return {name: hashlib.sha256(data).hexdigest() for name, data in attached.items()}
 
 
-def decode_lessons(data: bytes) -> list[KnownLesson]:
+def decode_lessons(data: bytes) -> list[JournalEntry]:
     """Return the lessons in `knowledge.jsonl`. Raises ValueError, which names that file."""
     lessons = []
     try:
         for number, line in enumerate(data.decode().splitlines(), start=1):
             content = json.loads(line)
             event = decode_event(json.dumps(content["event"]), f"{KNOWLEDGE}: line {number}")
-            lessons.append(KnownLesson(event, require_text(content["stamped_at"])))
+            lessons.append(JournalEntry(event, require_text(content["stamped_at"])))
     except (KnowledgeError, ValueError, KeyError, TypeError, RecursionError) as error:
         raise ValueError(f"{KNOWLEDGE} cannot be read: {error}") from error
     return lessons
@@ -131,7 +120,7 @@ def decode_statistics(data: bytes) -> Statistics:
         raise ValueError(f"{STATISTICS} cannot be read: {type(error).__name__}: {error}") from error
 
 
-def _encode_lessons(entries: Iterable[StoredEntry | KnownLesson]) -> bytes:
+def _encode_lessons(entries: Iterable[StoredEntry | JournalEntry]) -> bytes:
     """Encode lesson by lesson: a list of all lines before they are joined would be a run's peak of memory."""
     lines = bytearray()
     for each in entries:

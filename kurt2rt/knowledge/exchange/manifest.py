@@ -11,9 +11,10 @@ from kurt2rt.core.rla.condition import LevelFeatures
 from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.knowledge.exchange.attachments import KNOWLEDGE, STATISTICS, KnownLesson
+from kurt2rt.knowledge.exchange.attachments import KNOWLEDGE, STATISTICS
 from kurt2rt.knowledge.exchange.json_checks import require_text
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding
+from kurt2rt.knowledge.journal.entry import JournalEntry
 
 _BYTES = np.dtype("<f8").itemsize
 _Text = Annotated[str, AfterValidator(require_text)]
@@ -59,7 +60,7 @@ def read_manifest(content: Mapping[str, Any]) -> Manifest:
         raise ValueError(f"its manifest: {'.'.join(map(str, problem['loc']))}: {problem['msg']}") from error
 
 
-def require_times(lessons: Iterable[KnownLesson]) -> None:
+def require_times(lessons: Iterable[JournalEntry]) -> None:
     """Raise ValueError unless each lesson has a stamp with a time zone."""
     for number, lesson in enumerate(lessons, start=1):
         try:
@@ -70,7 +71,7 @@ def require_times(lessons: Iterable[KnownLesson]) -> None:
             raise ValueError(f"{KNOWLEDGE}: line {number}: its stamp {lesson.stamped_at[:40]!r} is not a time")
 
 
-def require_expectations(statistics: Statistics, lessons: Iterable[KnownLesson], binding: KnowledgeBinding) -> None:
+def require_expectations(statistics: Statistics, lessons: Iterable[JournalEntry], binding: KnowledgeBinding) -> None:
     """Raise ValueError unless each expectation has one finite number for each feature of its RLA's level."""
     events = (lesson.event for lesson in lessons)
     levels = {event.rla.rla_id: event.rla.level for event in events if isinstance(event, RlaCreated)}

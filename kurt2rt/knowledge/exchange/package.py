@@ -22,7 +22,6 @@ from kurt2rt.knowledge.exchange.attachments import (
     SETTINGS,
     STATISTICS,
     TASK,
-    KnownLesson,
     collect_attachments,
     decode_lessons,
     decode_statistics,
@@ -32,7 +31,7 @@ from kurt2rt.knowledge.files.atomic_write import SavedCopy, plain_part, stamp_pa
 from kurt2rt.knowledge.files.create import create_knowledge
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
 from kurt2rt.knowledge.journal.entry import JournalEntry
-from kurt2rt.knowledge.journal.fold import fold_entries
+from kurt2rt.knowledge.journal.fold import read_content
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import binding_for
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
@@ -52,7 +51,7 @@ class KnowledgePackage:
 
     path: Path
     binding: KnowledgeBinding
-    lessons: tuple[KnownLesson, ...]
+    lessons: tuple[JournalEntry, ...]
     statistics: Statistics
     task: str
     """Name of the task whose settings are in it."""
@@ -109,8 +108,7 @@ def package_knowledge(path: Path, folder: Path, stamp: str, *, robot: RobotSetti
 def _package(journal: Journal, robot: RobotSettings, task: TaskSettings, stamp: str) -> bytes:
     path, binding = journal.path, journal.binding
     require_compatible(binding, binding_for(robot, task), path, journal.has_lessons_at)
-    entries, statistics = journal.read_all()
-    system = fold_entries(journal, entries, radius=0.0)
+    entries, system, statistics = read_content(journal)
     about: dict[str, Any] = {
         "kurt2rt": version("kurt2rt"),
         "exported_at": stamp,
@@ -164,9 +162,8 @@ def import_knowledge(path: Path, into: Path, robot: RobotSettings, task: TaskSet
     levels = {getattr(each.event, "level", "") for each in package.lessons}
     levels |= {each.event.rla.level for each in package.lessons if hasattr(each.event, "rla")}
     require_compatible(package.binding, here, path, lambda level: level in levels)
-    entries = [JournalEntry(each.event, each.stamped_at) for each in package.lessons]
     note = f"{path.name}, exported {package.exported_at}, imported {stamp}"
-    create_knowledge(into, package.binding, entries, package.statistics, {IMPORTED_FROM: note}, source=path)
+    create_knowledge(into, package.binding, package.lessons, package.statistics, {IMPORTED_FROM: note}, source=path)
     return ImportResult(package, _differing_settings(package, robot, task))
 
 

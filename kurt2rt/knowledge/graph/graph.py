@@ -3,7 +3,6 @@
 Nodes are RLAs, edges their successors, with percentages.
 """
 
-import math
 from collections.abc import Iterable, Mapping
 from typing import NoReturn, TypeAlias
 
@@ -13,7 +12,7 @@ from kurt2rt.core.expectations.expectations import is_valid_for
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics, follow_ups
-from kurt2rt.knowledge.journal.fold import fold_entries
+from kurt2rt.knowledge.journal.fold import read_content
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -31,11 +30,9 @@ def read_network(journal: Journal, *, level: str = BASIC, behaviour: str | None 
 
     Raises KnowledgeError for a damaged file, and if it has no such RLA.
     """
-    # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
-    entries = journal.entries()
-    system = fold_entries(journal, entries, radius=math.inf)
+    _, system, statistics = read_content(journal)
     features = journal.binding.levels[level].feature_names if level in journal.binding.levels else ()
-    network = build_network(system, journal.statistics(), level=level, behaviour=behaviour, features=features)
+    network = build_network(system, statistics, level=level, behaviour=behaviour, features=features)
     if not network:
         _refuse(journal, system, level, behaviour)
     return network

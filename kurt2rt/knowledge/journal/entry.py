@@ -11,11 +11,11 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 @dataclass(frozen=True, slots=True)
 class JournalEntry:
-    """A lesson to be written."""
+    """A lesson to be written, or as a recording or package holds it."""
 
     event: TeachingEvent
     stamped_at: str
-    """Wall clock, UTC, ISO 8601."""
+    """Wall clock, UTC, ISO 8601; empty if it is unknown."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,5 +1,6 @@
 """Fold of the journal: the RLA system that its lessons make."""
 
+import math
 from collections.abc import Container, Iterable
 
 from kurt2rt.core.outcome_text import event_error_text
@@ -8,6 +9,7 @@ from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
 from kurt2rt.core.rla.events import RlaCreated, SituationNamed
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
@@ -23,6 +25,16 @@ def fold_journal(journal: Journal, radius: float) -> RlaSystem:
         KnowledgeError: a row is damaged, or a lesson does not fit those before it; names file and row.
     """
     return fold_entries(journal, journal.entries(), radius)
+
+
+def read_content(journal: Journal) -> tuple[list[StoredEntry], RlaSystem, Statistics]:
+    """Return the lessons of a journal, the RLA system that they make, and the statistics, all of one moment.
+
+    Raises:
+        KnowledgeError: a row is damaged, or a lesson does not fit those before it; names file and row.
+    """
+    entries, statistics = journal.read_all()
+    return entries, fold_entries(journal, entries, radius=math.inf), statistics
 
 
 def fold_entries(journal: Journal, entries: Iterable[StoredEntry], radius: float) -> RlaSystem:

@@ -15,7 +15,7 @@ from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
 from kurt2rt.knowledge.journal.entry import StoredEntry
-from kurt2rt.knowledge.journal.fold import fold_entries
+from kurt2rt.knowledge.journal.fold import fold_entries, read_content
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -135,8 +135,7 @@ def _read_fitting(
     journal: Journal, path: Path, settings: RobotSettings, task: TaskSettings
 ) -> tuple[list[TeachingEvent], Statistics]:
     require_compatible(journal.binding, binding_for(settings, task), path, journal.has_lessons_at)
-    entries, statistics = journal.read_all()
-    fold_entries(journal, entries, radius=math.inf)
+    entries, _, statistics = read_content(journal)
     return [entry.event for entry in entries], statistics
 
 

@@ -23,7 +23,7 @@ from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics, follow_ups
 from kurt2rt.knowledge.journal.entry import StoredEntry
-from kurt2rt.knowledge.journal.fold import fold_entries
+from kurt2rt.knowledge.journal.fold import fold_entries, read_content
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.show.level_tables import level_table, mid_table, named_table
 from kurt2rt.knowledge.show.table_cells import (
@@ -48,11 +48,8 @@ def render_knowledge(journal: Journal, limit: int | None = None, *, wide: bool =
 
     `wide` adds each RLA's largest features and its successors, for which 80 columns are too few.
     """
-    # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
-    entries = journal.entries()
-    system = fold_entries(journal, entries, radius=math.inf)
+    entries, system, statistics = read_content(journal)
     rlas = system.rlas
-    statistics = journal.statistics()
     any_value = any(rla.rla_id in statistics.values for rla in rlas)
     taught = {entry.event.origin.command_id: entry for entry in entries}
     shares = follow_ups(statistics)
@@ -101,9 +98,7 @@ def render_lessons(journal: Journal, limit: int | None = None, taught_by: str | 
     `taught_by`: only those of that teacher.
     """
     records, stamps, undone_by = _read_lessons(journal, taught_by)
-    table = TextTable()
-    for heading in ("lesson", "id", "taught (UTC), by", "undone by"):
-        table.add_column(heading)
+    table = TextTable("lesson", "id", "taught (UTC), by", "undone by")
     for record in records[:limit]:
         origin = record.event.origin
         table.add_row(
@@ -118,10 +113,7 @@ def render_lessons(journal: Journal, limit: int | None = None, taught_by: str | 
 
 def knowledge_data(journal: Journal) -> dict[str, Any]:
     """Return binding, RLAs of all levels and named situations, for JSON. Raises KnowledgeError."""
-    # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
-    entries = journal.entries()
-    system = fold_entries(journal, entries, radius=math.inf)
-    statistics = journal.statistics()
+    entries, system, statistics = read_content(journal)
     taught = {entry.event.origin.command_id: entry for entry in entries}
     binding = journal.binding
     features = {BASIC: binding.feature_names} | {

@@ -60,9 +60,7 @@ def named_table(named: Mapping[str, Condition], features: LevelFeatures) -> Text
     A history is shown in words if its settings are shipped; else in numbers.
     """
     settings = _shipped_mid(features.feature_hash)
-    table = TextTable()
-    for heading in ("named", "where: the newest first"):
-        table.add_column(heading)
+    table = TextTable("named", "where: the newest first")
     for name in sorted(named):
         table.add_row(printable(name), printable(_where(named[name], settings, features.feature_names)))
     return table

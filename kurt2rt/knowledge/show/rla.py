@@ -1,6 +1,5 @@
 """View of one RLA: condition, action and expectation (paper, III.A), for `knowledge show --rla`."""
 
-import math
 from typing import Any
 
 from rich.console import Group, RenderableType
@@ -10,7 +9,7 @@ from kurt2rt.core.expectations.expectations import is_valid_for
 from kurt2rt.core.perception.definition import AVERAGED
 from kurt2rt.core.rla.rla import BASIC, Rla
 from kurt2rt.core.rla.statistics import Expectation, Statistics, follow_ups
-from kurt2rt.knowledge.journal.fold import fold_entries
+from kurt2rt.knowledge.journal.fold import read_content
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -62,12 +61,11 @@ def expectation_data(journal: Journal, rla_id: int) -> dict[str, Any] | None:
 
 def _read(journal: Journal, rla_id: int) -> tuple[Rla, tuple[str, ...], Statistics, Expectation | None]:
     """Return an RLA, the names of its features, the statistics, and its expectation; KnowledgeError if it is gone."""
-    # Lessons first: statistics read later may know more RLAs than the fold, never fewer.
-    system = fold_entries(journal, journal.entries(), radius=math.inf)
+    _, system, statistics = read_content(journal)
     rla = system.get(rla_id)
     if rla is None:
         raise KnowledgeError(KnowledgeCode.NO_SUCH_RLA, where=journal.path, rla_id=rla_id)
-    statistics, binding = journal.statistics(), journal.binding
+    binding = journal.binding
     names = binding.feature_names if rla.level == BASIC else binding.levels[rla.level].feature_names
     known = statistics.expectations.get(rla_id)
     return (

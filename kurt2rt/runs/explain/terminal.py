@@ -76,8 +76,7 @@ def _differences(level: LevelFacts, rla: RlaFacts, words: SensorWords) -> Render
     other = level.contrast_of(rla)
     pull = {} if other is None else {each.name: each.pull for each in contrast_attribution(level, rla, other)}
     theirs = {} if other is None else dict(zip(level.names, other.condition, strict=True))
-    table = TextTable()
-    table.add_column("feature")
+    table = TextTable("feature")
     table.add_column("here", number=True)
     table.add_column(f"RLA {rla.rla_id}", number=True)
     table.add_column("of the distance")
@@ -106,9 +105,7 @@ def _differences(level: LevelFacts, rla: RlaFacts, words: SensorWords) -> Render
 
 
 def _history(rla: RlaFacts) -> TextTable:
-    table = TextTable()
-    for heading in ("when", "by", "phase", "what"):
-        table.add_column(heading)
+    table = TextTable("when", "by", "phase", "what")
     for act in rla.acts:
         text = f"{act.text} (taken back)" if act.undone else act.text
         table.add_row(printable(format_stamp(act)), printable(act.teacher), str(act.phase), printable(text))
@@ -170,9 +167,10 @@ def _shares(timeline: Timeline, whole_s: float) -> TextTable:
         key = stretch.kind, stretch.what
         lasts[key] = lasts.get(key, 0.0) + stretch.lasts_s
         times[key] = times.get(key, 0) + 1
-    table = TextTable()
-    for heading, side in (("what", "left"), ("s", "right"), ("times", "right"), ("share of the time", "left")):
-        table.add_column(heading, number=side == "right")
+    table = TextTable("what")
+    table.add_column("s", number=True)
+    table.add_column("times", number=True)
+    table.add_column("share of the time")
     for kind, what in sorted(lasts, key=lambda key: -lasts[key]):
         share = lasts[kind, what] / whole_s
         bar = f"{100 * share:3.0f} % {'█' * round(_BAR * share)}"

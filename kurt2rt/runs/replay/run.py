@@ -20,11 +20,11 @@ from kurt2rt.knowledge.exchange.attachments import (
     SETTINGS,
     STATISTICS,
     TASK,
-    KnownLesson,
     decode_lessons,
     decode_statistics,
     hash_attachments,
 )
+from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_head import RunHead
@@ -116,7 +116,7 @@ class Run:
             return TaskSettings.model_validate_json(self._attachments[TASK])
 
     @cached_property
-    def lessons(self) -> tuple[KnownLesson, ...]:
+    def lessons(self) -> tuple[JournalEntry, ...]:
         """Lessons from before the run; empty if its beginning was deleted. Raises RecordingError."""
         data = self._attachments.get(KNOWLEDGE)
         return () if data is None else tuple(_decoded(decode_lessons, data))
