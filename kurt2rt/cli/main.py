@@ -4,12 +4,10 @@ Imports of the standard library, config.errors and what is small only (interrupt
 Ctrl-C before `main` begins leaves a traceback, and `kurt2rt --help` takes as long as its imports.
 """
 
-import codecs
 import errno
 import io
 import os
 import sys
-import traceback
 from typing import NoReturn
 
 from kurt2rt.platform.own_packages import hidden_packages
@@ -20,7 +18,7 @@ if _hidden := hidden_packages():  # before the first import of one of them, whic
 
 from config.errors import ExitCode, UserError
 from kurt2rt.cli.interrupt import end_at_interrupt
-from kurt2rt.platform.extras import EXTRAS, extra_for
+from kurt2rt.platform.extras import extra_for
 
 _MENDED_BY_ANOTHER_PATH = {
     errno.EACCES,
@@ -37,8 +35,6 @@ _MENDED_BY_ANOTHER_PATH = {
 
 _ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS")
 """numpy's libraries read these when they are loaded."""
-_PLAIN = {"─": "-", "█": "#", "·": ".", "✗": "x", "µ": "u", "±": "+-", "…": "..."}
-_ERRORS = "kurt2rt-plain"
 _LEAST = {"COLUMNS": 20, "LINES": 5}
 """Smallest sizes that are those of a terminal; some programs set 0 for unknown, and rich then prints nothing."""
 
@@ -84,10 +80,6 @@ def main() -> None:
 
 def _in_one_line(error: BaseException) -> str | None:
     """Return what is wrong and what to do; None if the user cannot mend it."""
-    package = _unready_package(error)
-    if package is not None:
-        told = f"{package} does not start with its own settings ({' '.join(str(error).split())})"
-        return f"{told}; mend or remove its settings file"
     whose = "".join(f"{note}: " for note in getattr(error, "__notes__", ()))  # one of many jobs
     if isinstance(error, BaseExceptionGroup):
         # A task group wraps even the one error that ended it. A disk that fails ends several tasks at once.
@@ -100,13 +92,6 @@ def _in_one_line(error: BaseException) -> str | None:
     if isinstance(error, OSError) and error.errno == errno.EIO:
         return f"{whose}{error}; see whether the disk or device is well, or give another file"
     return None
-
-
-def _unready_package(error: BaseException) -> str | None:
-    """Return the package of an extra that raised the error while it was imported, as by a broken file of settings."""
-    frames = (frame for frame, _ in traceback.walk_tb(error.__traceback__) if frame.f_code.co_name == "<module>")
-    packages = [str(frame.f_globals.get("__name__")).partition(".")[0] for frame in frames]
-    return next((each for each in reversed(packages) if each in EXTRAS), None)
 
 
 def _leaves(error: BaseException) -> list[BaseException]:
@@ -123,22 +108,14 @@ def _complain(text: str, code: ExitCode = ExitCode.REFUSED) -> NoReturn:
 
 
 def adapt_to_terminal() -> None:
-    """Let this process print what its terminal can show: like letters for others, and lines at widths that exist."""
-    codecs.register_error(_ERRORS, _like_letters)
+    """Let this process print what its terminal can show: ? for other letters, and lines at widths that exist."""
     for stream in (sys.stdin, sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors=_ERRORS)
+            stream.reconfigure(errors="replace")
     for name, least in _LEAST.items():
         size = os.environ.get(name, "")
         if size.isdigit() and int(size) < least:
             del os.environ[name]
-
-
-def _like_letters(error: UnicodeError) -> tuple[str, int]:
-    """Return letters for those that an encoding does not have, a question mark for bytes that are none of it."""
-    assert isinstance(error, UnicodeEncodeError | UnicodeDecodeError)
-    unknown = error.object[error.start : error.end]
-    return "".join(_PLAIN.get(str(each), "?") for each in unknown), error.end
 
 
 if __name__ == "__main__":

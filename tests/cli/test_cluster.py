@@ -135,20 +135,6 @@ def test_cluster_without_dask_names_its_extra(
     assert "pip install '.[studies]' in kurt2rt's folder" in kurt2rt.refused(*words)
 
 
-def test_broken_file_of_dask_is_one_line_that_names_it(
-    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    for name in [name for name in sys.modules if name.partition(".")[0] in ("dask", "distributed")]:
-        monkeypatch.delitem(sys.modules, name)
-    for name in [name for name in sys.modules if name.startswith("kurt2rt.experiments.study.cluster")]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setenv("DASK_CONFIG", str(tmp_path))
-    (tmp_path / "mine.yaml").write_text("a: [")
-    refusal = kurt2rt.refused("study", "worker", "--cluster", "x")
-    assert "dask does not start with its own settings (" in refusal
-    assert str(tmp_path / "mine.yaml") in refusal
-
-
 class OneFuture:
     """Future of a job that gave these files."""
 

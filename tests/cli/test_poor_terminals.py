@@ -14,7 +14,6 @@ from tests.cli.helpers import CommandLine
 from tests.runs.replay.stored_runs import STORED
 
 WALLS = str(STORED / "walls.mcap")
-LIKE = str.maketrans({"─": "-", "█": "#", "·": ".", "✗": "x", "µ": "u", "±": "+-", "…": "..."})
 REPORTS: tuple[tuple[str, ...], ...] = (
     ("--version",),
     ("plugin", "list"),
@@ -65,8 +64,7 @@ def test_reports_are_alike_on_every_terminal(terminals: Terminals, words: tuple[
         if words == ("pair", "phone"):
             assert ("█" in poor[1], NO_CODE in poor[1]) == (encoding == "utf-8", encoding != "utf-8")
         else:
-            assert poor[1].translate(LIKE) == wide[1].translate(LIKE)
-        assert "?" not in poor[1].replace("?token=", "") or "?" in wide[1]
+            assert poor[1] == wide[1].encode(encoding, "replace").decode(encoding)
 
 
 def test_live_screen_without_blocks_says_so() -> None:

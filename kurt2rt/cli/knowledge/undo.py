@@ -1,7 +1,6 @@
 """`kurt2rt knowledge undo` and `redo`: a preview and a question before anything is changed."""
 
 import sys
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -10,17 +9,13 @@ import typer
 
 from config.errors import ExitCode
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, format_lesson, replaying, say
+from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, change_lines, format_lesson, replaying, say
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.knowledge.journal.writer import utc_now
 from kurt2rt.knowledge.versions.editing import require_no_robot
 from kurt2rt.knowledge.versions.undo import UndoPlan, apply_plan, plan_redo, plan_undo
-from kurt2rt.runs.replay.trial import format_answer
-from kurt2rt.runs.replay.undo_preview import TrialResult, preview, preview_on_newest
+from kurt2rt.runs.replay.undo_preview import preview, preview_on_newest
 from kurt2rt.service.settings import load_service
-
-_MOST_STRETCHES = 8
-"""Number of stretches shown of each run, the longest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,31 +132,9 @@ def _show(planned: UndoPlan, runs: Path | None) -> None:
     with replaying() as report:
         shown = try_on(planned, recordings, report)
     for tried in shown.runs:
-        for line in _changes(tried):
+        for line in change_lines(tried.run, tried.found, tried.from_s):
             say(line)
     for note in shown.notes:
         say(f"not tried: {note}")
     if not shown.runs and not shown.notes:
         say(f"not tried: {recordings} holds no recorded run of such knowledge")
-
-
-def _changes(tried: TrialResult) -> Iterator[str]:
-    found = tried.found
-    decisions = f"{found.decided} decisions"
-    if tried.from_s:
-        decisions += f" from {tried.from_s:.0f} s on"
-    if found.same:
-        yield f"{tried.run}: not one of {decisions} would have been another"
-        return
-    counts = (
-        (found.other_action, "another action"),
-        (found.would_ask, "ask where it drove"),
-        (found.would_drive, "drive where it asked"),
-        (found.mid_otherwise, "another way"),
-    )
-    kinds = ", ".join(f"{count} times {what}" for count, what in counts if count)
-    yield f"{tried.run}: of {decisions}: {kinds}; the longest:"
-    longest = sorted(found.stretches, key=lambda each: -each.ticks)[:_MOST_STRETCHES]
-    for each in sorted(longest, key=lambda each: each.from_s):
-        change = f"{format_answer(each.would_be)}, instead of {format_answer(each.was)}"
-        yield f"  {each.from_s:7.2f} to {each.to_s:7.2f} s  {change}"
