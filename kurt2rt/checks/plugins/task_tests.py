@@ -1,9 +1,8 @@
-"""Tests that every policy, judge, metric, action, world and task passes, on made-up readings and poses."""
+"""Tests that every task passes, with its policy, judge, metric, actions and worlds, on made-up readings and poses."""
 
 import json
 import math
 import random
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from typing import TypeVar
@@ -11,11 +10,9 @@ from typing import TypeVar
 import pytest
 
 from behaviors.behaviour import Behaviour
-from behaviors.judges.judge import AppraisalFeatures, JudgeSettings
-from behaviors.metrics.task_metric import MetricSettings, TaskMetric
-from behaviors.policies.policy import PolicySettings
+from behaviors.judges.judge import AppraisalFeatures
+from behaviors.metrics.task_metric import TaskMetric
 from behaviors.repertoire import primitive_speeds
-from behaviors.repertoire_settings import PluginAction
 from config.settings import Settings
 from hal.robot import HIGHEST_COUNTS, SensorReadings, WheelSpeeds
 from hal.robot_settings import RobotSettings
@@ -34,11 +31,17 @@ _STEP_M = 0.01
 _InputT = TypeVar("_InputT")
 
 
-class _PartTests:
-    """A task and a robot to try a part with."""
+class TaskTests:
+    """Tests of a task and of all that it names. Inherit them, and name it.
 
-    task: str = "wall_following"
-    """Name or path of the task whose repertoire, behaviours and first world the part is tried with."""
+    For example:
+
+        class TestWandering(TaskTests):
+            task = "my_task.yaml"
+    """
+
+    task: str
+    """Name or path of the task."""
     robot: str | None = None
     """Name or path of the robot that it is tried on; None: that of the task."""
 
@@ -46,23 +49,10 @@ class _PartTests:
         """Return the task and the robot. Raises config.settings.SettingsError, also if the robot lacks a sensor."""
         return load_task_and_robot(self.task, self.robot)
 
-
-class PolicyTests(_PartTests, ABC):
-    """Tests of a policy. Inherit them, and name its settings.
-
-    For example:
-
-        class TestFlight(PolicyTests):
-            policy = Flight(kind="my_policy:Flight")
-    """
-
-    @property
-    @abstractmethod
-    def policy(self) -> PolicySettings:
-        """Settings of the policy under test; the plug-in's test gives them."""
-
-    def test_policy_is_the_same_once_it_was_written_as_json(self) -> None:
-        assert _through_json(self.policy) == self.policy
+    def test_parts_are_the_same_once_they_were_written_as_json(self) -> None:
+        task, _ = self.loaded()
+        parts = [each for each in (task.policy, task.judge, task.metric) if each is not None]
+        assert [_through_json(each) for each in parts] == parts
 
     def test_policy_names_actions_of_the_repertoire(self) -> None:
         assert set(self._chosen(self._asked())) <= set(load_task_repertoire(*self.loaded()))
@@ -70,59 +60,20 @@ class PolicyTests(_PartTests, ABC):
     def test_policy_has_no_memory(self) -> None:
         _require_no_memory(self._chosen, self._asked())
 
-    def _chosen(self, asked: Sequence[tuple[tuple[int, ...], str]]) -> list[str]:
-        policy = self.policy.build(self.loaded()[1].infrared)
-        return [policy.choose(view, behaviour) for view, behaviour in asked]
-
-    def _asked(self) -> list[tuple[tuple[int, ...], str]]:
-        behaviours = self.policy.behaviours or ("",)
-        return [(view, behaviour) for view in _views(self.loaded()[1]) for behaviour in behaviours]
-
-
-class JudgeTests(_PartTests, ABC):
-    """Tests of a judge. Inherit them, and name its settings.
-
-    For example:
-
-        class TestHarsh(JudgeTests):
-            judge = Harsh(kind="my_judge:Harsh")
-    """
-
-    @property
-    @abstractmethod
-    def judge(self) -> JudgeSettings | None:
-        """Settings of the judge; None for a task without rewards."""
-
-    def test_judge_is_the_same_once_it_was_written_as_json(self) -> None:
-        assert _through_json(self._settings()) == self.judge
-
     def test_judge_returns_minus_one_zero_or_one(self) -> None:
         assert set(self._rewards(_made_up_features())) <= {-1, 0, 1}
 
     def test_judge_has_no_memory(self) -> None:
         _require_no_memory(self._rewards, _made_up_features())
 
-    def _rewards(self, asked: Sequence[AppraisalFeatures]) -> list[int]:
-        judge = self._settings().build()
-        return [judge.judge(each) for each in asked]
-
-    def _settings(self) -> JudgeSettings:
-        return self.judge or pytest.skip("the task has no judge")
-
-
-class MetricTests(_PartTests, ABC):
-    """Tests of a metric. Inherit them, and name its settings.
-
-    For example:
-
-        class TestReach(MetricTests):
-            metric = Reach(kind="my_metric:Reach")
-    """
-
-    @property
-    @abstractmethod
-    def metric(self) -> MetricSettings:
-        """Settings of the metric under test; the plug-in's test gives them."""
+    def test_judge_does_not_punish_what_the_policy_does_in_the_open(self) -> None:
+        """Thresholds of a robot that sees farther call each place narrow."""
+        task, robot = self.loaded()
+        infrared, speeds = robot.infrared, primitive_speeds(task.repertoire)
+        nothing_in_view = (infrared.floor_counts,) * len(infrared.names)
+        policy = task.policy.build(infrared)
+        chosen = {policy.choose(nothing_in_view, behaviour) for behaviour in task.policy.behaviours or ("",)}
+        assert -1 not in self._rewards([_in_the_open(speeds[each], robot) for each in chosen if each in speeds])
 
     @pytest.fixture
     def simulation(self) -> Iterator[Simulation]:
@@ -131,39 +82,59 @@ class MetricTests(_PartTests, ABC):
         with closing(simulations_of(robot).open(task.teaching.world, _SEED, _PURPOSE)) as simulation:
             yield simulation
 
-    def test_metric_is_the_same_once_it_was_written_as_json(self) -> None:
-        assert _through_json(self.metric) == self.metric
-
-    def test_metric_takes_the_world(self, simulation: Simulation) -> None:
-        self.metric.require(simulation.plan, self.loaded()[0].behaviours)
-
     def test_metric_begins_without_progress_in_a_unit_and_a_behaviour(self, simulation: Simulation) -> None:
         metric = self._new_metric(simulation)
         assert metric.progress == 0
-        assert isinstance(metric.unit, str)
         assert metric.unit
         assert metric.behaviour in self.loaded()[0].behaviours
 
-    def test_progress_and_findings_are_finite(self, simulation: Simulation) -> None:
+    def test_metric_of_the_same_poses_is_the_same_and_finite(self, simulation: Simulation) -> None:
         metric = self._driven(simulation)
+        assert metric.progress == self._driven(simulation).progress
         assert all(math.isfinite(each) for each in (metric.progress, *metric.findings.values()))
-
-    def test_the_same_poses_give_the_same_progress(self, simulation: Simulation) -> None:
-        assert self._driven(simulation).progress == self._driven(simulation).progress
-
-    def test_reset_adds_no_progress(self, simulation: Simulation) -> None:
-        metric = self._driven(simulation)
         before = metric.progress
         metric.reset(_walk(simulation.pose)[0])
-        assert metric.progress == before
+        assert metric.progress == before, "being put elsewhere is no progress"
 
-    def test_abort_ends_a_drive_at_any_time(self, simulation: Simulation) -> None:
-        metric = self._driven(simulation)
-        metric.abort()
-        assert math.isfinite(metric.progress)
+    def test_actions_return_speeds_that_the_guard_takes(self) -> None:
+        fastest_m_s = self.loaded()[1].guard.maximum_speed_m_s
+        speeds = [each for action in self._actions() for both in self._speeds(action) for each in both]
+        assert max(map(abs, speeds)) <= fastest_m_s
+
+    def test_start_resets_each_action(self) -> None:
+        for action in self._actions():
+            assert self._speeds(action) == self._speeds(action)
+
+    def test_worlds_have_what_the_course_needs_each_time(self) -> None:
+        task, robot = self.loaded()
+        worlds, factory = (task.teaching.world, *task.exam.worlds), simulations_of(robot)
+        factory.require_worlds(*worlds)
+        require_metric(factory, task, worlds)
+        assert [factory.settings_of(each) for each in worlds] == [factory.settings_of(each) for each in worlds]
+
+    def test_critic_has_its_sensors(self) -> None:
+        task, robot = self.loaded()
+        AppraisalPerception(critic_of(task.critic, robot), robot)
+
+    def _chosen(self, asked: Sequence[tuple[tuple[int, ...], str]]) -> list[str]:
+        task, robot = self.loaded()
+        policy = task.policy.build(robot.infrared)
+        return [policy.choose(view, behaviour) for view, behaviour in asked]
+
+    def _asked(self) -> list[tuple[tuple[int, ...], str]]:
+        task, robot = self.loaded()
+        return [(view, behaviour) for view in _views(robot) for behaviour in task.policy.behaviours or ("",)]
+
+    def _rewards(self, asked: Sequence[AppraisalFeatures]) -> list[int]:
+        settings = self.loaded()[0].judge
+        if settings is None:
+            pytest.skip("the task has no judge")
+        judge = settings.build()
+        return [judge.judge(each) for each in asked]
 
     def _new_metric(self, simulation: Simulation) -> TaskMetric:
-        metric = self.metric.build(simulation, self.loaded()[0].behaviours, random.Random(_SEED))
+        task, _ = self.loaded()
+        metric = task.metric.build(simulation, task.behaviours, random.Random(_SEED))
         metric.reset(_walk(simulation.pose)[0])
         return metric
 
@@ -173,93 +144,13 @@ class MetricTests(_PartTests, ABC):
             metric.update(pose)
         return metric
 
-
-class ActionTests(_PartTests, ABC):
-    """Tests of an action. Inherit them, and name its settings.
-
-    For example:
-
-        class TestWiggling(ActionTests):
-            action = Wiggling(kind="my_action:Wiggling", name="wiggle")
-    """
-
-    @property
-    @abstractmethod
-    def action(self) -> PluginAction:
-        """Entry of the action under test; the plug-in's test gives it."""
-
-    def test_action_is_the_same_once_it_was_written_as_json(self) -> None:
-        assert _through_json(self.action) == self.action
-
-    def test_step_returns_two_speeds_that_the_guard_takes(self) -> None:
-        fastest_m_s = self.loaded()[1].guard.maximum_speed_m_s
-        assert all(abs(speed) <= fastest_m_s for both in self._speeds(self._new_action()) for speed in both)
-
-    def test_start_resets_the_action(self) -> None:
-        action = self._new_action()
-        assert self._speeds(action) == self._speeds(action) == self._speeds(self._new_action())
-
-    def test_finished_and_lost_are_true_or_false(self) -> None:
-        action = self._new_action()
-        self._speeds(action)
-        assert {type(each) for each in (action.finished, action.lost)} == {bool}
-
-    def _new_action(self) -> Behaviour:
-        return self.action.build(self.loaded()[1])
+    def _actions(self) -> list[Behaviour]:
+        return list(load_task_repertoire(*self.loaded()).values())
 
     def _speeds(self, action: Behaviour) -> list[tuple[float, float]]:
         action.start()
         views = enumerate(_views(self.loaded()[1]))
         return [(left_m_s, right_m_s) for left_m_s, right_m_s in (action.step(_readings(*view)) for view in views)]
-
-
-class WorldTests(_PartTests):
-    """Tests of a world. Inherit them, and name it: `world = "my_hall.yaml"`, or `my_hall:world` of a function."""
-
-    world: str
-
-    def test_world_is_the_same_each_time(self) -> None:
-        worlds = simulations_of(self.loaded()[1])
-        worlds.require_worlds(self.world)
-        assert worlds.settings_of(self.world) == worlds.settings_of(self.world)
-
-
-class TaskTests(PolicyTests, JudgeTests, MetricTests):
-    """Tests of a task with its policy, judge and metric. Inherit them, and name it: `task = "my_task.yaml"`."""
-
-    @property
-    def policy(self) -> PolicySettings:
-        """Settings of the task's policy."""
-        return self.loaded()[0].policy
-
-    @property
-    def judge(self) -> JudgeSettings | None:
-        """Settings of the task's judge."""
-        return self.loaded()[0].judge
-
-    @property
-    def metric(self) -> MetricSettings:
-        """Settings of the task's metric."""
-        return self.loaded()[0].metric
-
-    def test_worlds_have_what_the_course_needs(self) -> None:
-        task, robot = self.loaded()
-        worlds = (task.teaching.world, *task.exam.worlds)
-        simulations_of(robot).require_worlds(*worlds)
-        require_metric(simulations_of(robot), task, worlds)
-
-    def test_critic_has_its_sensors(self) -> None:
-        task, robot = self.loaded()
-        AppraisalPerception(critic_of(task.critic, robot), robot)
-
-    def test_judge_does_not_punish_what_the_policy_does_in_the_open(self) -> None:
-        """Thresholds of a robot that sees farther call each place narrow."""
-        task, robot = self.loaded()
-        infrared, speeds = robot.infrared, primitive_speeds(task.repertoire)
-        nothing_in_view = (infrared.floor_counts,) * len(infrared.names)
-        policy = self.policy.build(infrared)
-        chosen = {policy.choose(nothing_in_view, behaviour) for behaviour in self.policy.behaviours or ("",)}
-        assert -1 not in self._rewards([_in_the_open(speeds[each], robot) for each in chosen if each in speeds])
 
 
 def _through_json(settings: Settings) -> Settings:

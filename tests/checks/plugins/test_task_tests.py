@@ -1,18 +1,17 @@
-"""The inherited tests of the parts of a task: the shipped tasks pass, and parts that break a promise fail."""
+"""The inherited tests of a task: the shipped ones and one of another author pass; a broken promise fails its test."""
 
 from collections.abc import Callable
 from contextlib import closing
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from behaviors.judges.judge import JudgeSettings
-from behaviors.policies.policy import PolicySettings
 from config.settings import SettingsError
 from hal.robot_settings import load_robot
-from kurt2rt.checks.plugins.task_tests import ActionTests, JudgeTests, MetricTests, PolicyTests, TaskTests, WorldTests
+from kurt2rt.checks.plugins.task_tests import TaskTests
 from simbridge.contracts.robot_kind import simulations_of
-from tests.plugin_parts import Moving, Reach, Turning, Wiggling
+from tests.plugin_packages import write_parts, write_repertoire, write_task
 
 TASKS = ("circle", "eight", "fleeing", "wall_following", "streets", "route", "errands")
 TASKS_OF_ROBOTS = ("school/circle", "school/fleeing", "school/wall_following", "turtlebot/fleeing")
@@ -24,33 +23,29 @@ class TestShippedTasks(TaskTests):
         self.task = request.param
 
 
-class TestPartsOfAnotherAuthor(PolicyTests, JudgeTests, MetricTests, ActionTests):
-    policy = Turning(kind="parts:Turning")
-    judge = Moving(kind="parts:Moving")
-    metric = Reach(kind="parts:Reach")
-    action = Wiggling(kind="parts:Wiggling", name="wiggle")
-
-
-class TestTurningOfTheSchoolRobot(PolicyTests):
-    task = "school/fleeing"
-
-    @property
-    def policy(self) -> PolicySettings:
-        return self.loaded()[0].policy
-
-
-class TestWorld(WorldTests):
-    world = "a"
+class TestTaskOfAnotherAuthor(TaskTests):
+    @pytest.fixture(autouse=True)
+    def named(self, plugin_folder: Path) -> None:
+        write_parts(plugin_folder, "parts_tested")
+        wiggle = {"kind": "parts_tested:Wiggling", "name": "wiggle"}
+        repertoire = write_repertoire(plugin_folder, wiggle)
+        kinds = {"policy": "Turning", "judge": "Moving", "metric": "Reach"}
+        parts = {part: {"kind": f"parts_tested:{kind}"} for part, kind in kinds.items()}
+        self.task = str(write_task(plugin_folder, repertoire=str(repertoire), **parts))
 
 
 class Part:
     """Part that breaks the promises of each kind."""
 
-    unit, needs_reset, behaviour, finished, lost = "m", False, "", False, 0
+    unit, behaviour = "", ""
+    behaviours = ("",)
 
     def __init__(self) -> None:
         self.asked = 0
         self.progress = 1.0
+
+    def build(self, *_: object) -> "Part":
+        return Part()
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it looks at nothing
         self.asked += 1
@@ -73,39 +68,21 @@ class Part:
     def update(self, pose: object) -> None:
         pass
 
-    def abort(self) -> None:
-        self.progress = float("inf")
-
     @property
     def findings(self) -> dict[str, float]:
         return {"odd": float("nan")}
 
 
-class BrokenPolicy(PolicySettings):
-    def build(self, *_: object, **__: object) -> Any:
-        return Part()
+class Broken(TaskTests):
+    task = "wall_following"
 
+    def loaded(self) -> Any:
+        task, robot = super().loaded()
+        part = Part()
+        return task.model_copy(update={"policy": part, "judge": part, "metric": part}), robot
 
-class BrokenJudge(JudgeSettings):
-    def build(self, *_: object, **__: object) -> Any:
-        return Part()
-
-
-class BrokenMetric(Reach):
-    def build(self, *_: object, **__: object) -> Any:
-        return Part()
-
-
-class BrokenAction(Wiggling):
-    def build(self, *_: object, **__: object) -> Any:
-        return Part()
-
-
-class Broken(PolicyTests, JudgeTests, MetricTests, ActionTests):
-    policy = BrokenPolicy(kind="broken")
-    judge = BrokenJudge(kind="broken")
-    metric = BrokenMetric(kind="broken")
-    action = BrokenAction(kind="broken", name="leap")
+    def _actions(self) -> list[Any]:
+        return [Part()]
 
 
 @pytest.mark.parametrize(
@@ -115,9 +92,8 @@ class Broken(PolicyTests, JudgeTests, MetricTests, ActionTests):
         Broken.test_policy_has_no_memory,
         Broken.test_judge_returns_minus_one_zero_or_one,
         Broken.test_judge_has_no_memory,
-        Broken.test_step_returns_two_speeds_that_the_guard_takes,
-        Broken.test_start_resets_the_action,
-        Broken.test_finished_and_lost_are_true_or_false,
+        Broken.test_actions_return_speeds_that_the_guard_takes,
+        Broken.test_start_resets_each_action,
     ],
 )
 def test_broken_part_fails_the_test_about_it(promise: Callable[[Broken], None]) -> None:
@@ -129,9 +105,7 @@ def test_broken_part_fails_the_test_about_it(promise: Callable[[Broken], None]) 
     "promise",
     [
         Broken.test_metric_begins_without_progress_in_a_unit_and_a_behaviour,
-        Broken.test_progress_and_findings_are_finite,
-        Broken.test_reset_adds_no_progress,
-        Broken.test_abort_ends_a_drive_at_any_time,
+        Broken.test_metric_of_the_same_poses_is_the_same_and_finite,
     ],
 )
 def test_broken_metric_fails_the_test_about_it(promise: Callable[[Broken, object], None]) -> None:
@@ -145,9 +119,3 @@ def test_task_of_another_robot_is_refused() -> None:
     tests.task, tests.robot = "school/fleeing", "kurt2"
     with pytest.raises(SettingsError, match="is for the robot school"):
         tests.test_policy_has_no_memory()
-
-
-@pytest.mark.parametrize("tests", [PolicyTests, JudgeTests, MetricTests, ActionTests])
-def test_tests_without_a_part_say_what_is_missing(tests: Callable[[], object]) -> None:
-    with pytest.raises(TypeError, match=r"abstract \w+ '?(policy|judge|metric|action)"):
-        tests()
