@@ -453,14 +453,13 @@ def certify(options: _Certify) -> None:
     Results are kept in --out, so an interrupted run goes on where it was. Tasks
     that the batch does not know, such as routes, are driven on the CAN bus.
     """
-    from kurt2rt.experiments.certify import BrokenShare, Extent, make_plan, picture_jobs, read_drives, tell, worst_of
+    from kurt2rt.experiments.certify import Extent, make_plan, picture_jobs, read_drives, tell, worst_of
 
     task, robot = options.load()
     engine = options.engine_for(task, robot)
     generated = ("rooms-SEED",) if task.name == "wall_following" else ()
     places = tuple(dict.fromkeys(options.world or (*task.exam.worlds, *generated)))
-    shares = BrokenShare(options.dead_sensors, robot.infrared.names)
-    extent = Extent(options.first, options.runs, places, engine, shares)
+    extent = Extent(options.first, options.runs, places, engine, options.dead_sensors)
     plan = make_plan(task, options.knowledge, extent, job_parts(robot, options.out))
     # On the CAN bus the jobs are other ones.
     stated_engine = engine if engine is Engine.CAN else None
@@ -468,10 +467,9 @@ def certify(options: _Certify) -> None:
     command = typed_command("study certify", options, stated)
 
     def finish(study: RunningStudy) -> Told:
-        worst = worst_of(read_drives(plan), options.pictures)
-        again = picture_jobs(plan, worst)
+        again = picture_jobs(plan, worst_of(read_drives(plan), options.pictures))
         study.run([again])
-        return tell(plan, worst, again, options.words, command)
+        return tell(plan, again, options.words, command)
 
     run_study(plan, options, finish)
 

@@ -33,18 +33,6 @@ _MOST_ROBOT_S = 60_000.0
 """Limits of a job in the batch, which keeps the set points of all its runs: 24 MB."""
 
 
-class BrokenShare(NamedTuple):
-    """Share of the runs with a broken sensor, and the sensors that may break."""
-
-    share: float
-    """0 to 1."""
-    sensors: tuple[str, ...]
-    """Names, such as s15."""
-
-
-ALL_WORK = BrokenShare(0.0, ())
-
-
 class Run(NamedTuple):
     """One drive without a teacher, repeated by `kurt2rt exam --seed NUMBER --world WORLD`."""
 
@@ -61,19 +49,28 @@ class Run(NamedTuple):
         return world_of(self.place, self.number)
 
 
-def draw_runs(first: int, count: int, places: Sequence[str], broken: BrokenShare = ALL_WORK) -> list[Run]:
-    """Return the runs of the numbers from `first` on; each place is equally likely for each run."""
-    return [
-        Run(number, random.Random(f"world of run {number}").choice(places), _draw_break(number, broken))
-        for number in range(first, first + count)
-    ]
+class Extent(NamedTuple):
+    """Number and worlds of the runs."""
+
+    first: int
+    """Number of the first run."""
+    runs: int
+    places: tuple[str, ...]
+    """Worlds; SEED in a name stands for the number of the run."""
+    engine: Engine = Engine.COMPILED
+    broken_share: float = 0.0
+    """Share of the runs with a broken sensor, 0 to 1."""
 
 
-def _draw_break(number: int, broken: BrokenShare) -> str:
-    chance = random.Random(f"broken sensor of run {number}")
-    if chance.random() >= broken.share:
-        return ""
-    return f"{chance.choice(broken.sensors)}={chance.choice(list(FaultKind))}"
+def draw_runs(extent: Extent, sensors: Sequence[str] = ()) -> tuple[Run, ...]:
+    """Return the runs of an extent; each place is equally likely for each. `sensors`: names of those that may break."""
+    runs = []
+    for number in range(extent.first, extent.first + extent.runs):
+        place = random.Random(f"world of run {number}").choice(extent.places)
+        chance = random.Random(f"broken sensor of run {number}")
+        breaks = chance.random() < extent.broken_share
+        runs.append(Run(number, place, f"{chance.choice(sensors)}={chance.choice(list(FaultKind))}" if breaks else ""))
+    return tuple(runs)
 
 
 class BlockOutcome(Outcome):
@@ -91,11 +88,11 @@ class BlockJob(StudyJob):
     taught: Path
     """File with the lessons of the robot."""
     runs: tuple[Run, ...]
-    places: bool = False
-    """True if the drives are stored with the places of pictures."""
+    before: DriveRow | None = None
+    """The same run as it was driven before; the drive is then stored with the places of its picture."""
 
     async def measure(self, knowledge: Path, report: Report) -> BlockOutcome:  # noqa: ARG002 - nothing is taught
-        """Drive all runs and return the outcome."""
+        """Drive all runs and return the outcome. Raises BatchDiffersError if a run differs from the drive before."""
         events, infrared = read_lessons(self.taught, self.robot, self.task), self.robot.infrared
         setups = []
         for run in self.runs:
@@ -103,20 +100,14 @@ class BlockJob(StudyJob):
             setups.append(ExamSetup(run.world, run.number, events=events, broken=broken))
         engine = self.engines.exams
         drives = await run_drives(self.factory, self.robot, self.task, setups, report, engine, measured=False)
-        stored = tuple(each.stored(places=self.places) for each in drives)
+        if self.before is not None and drives[0].stored() != self.before:
+            raise BatchDiffersError(
+                "the batch and the CAN bus differ; all results of the batch are refused",
+                where=f"run {self.before.seed} in world {self.before.world}",
+                do="report it, and give --engine can and a new folder with --out",
+            )
+        stored = tuple(each.stored(places=self.before is not None) for each in drives)
         return BlockOutcome(made_of=self.made_of, seed=self.seed, drives=stored)
-
-
-class Extent(NamedTuple):
-    """Number and worlds of the runs."""
-
-    first: int
-    """Number of the first run."""
-    runs: int
-    places: tuple[str, ...]
-    """Worlds; SEED in a name stands for the number of the run."""
-    engine: Engine
-    broken: BrokenShare = ALL_WORK
 
 
 class Certified(NamedTuple):
@@ -137,7 +128,7 @@ def make_plan(task: TaskSettings, knowledge: Path, extent: Extent, parts: JobPar
     lessons = read_lessons(knowledge, parts["robot"], task)
     if not lessons:
         raise SettingsError("holds no lesson", where=knowledge, do="teach the robot first")
-    runs = tuple(draw_runs(extent.first, extent.runs, extent.places, extent.broken))
+    runs = draw_runs(extent, parts["robot"].infrared.names)
     require_places(parts["factory"], task, [world_of(place, extent.first) for place in extent.places])
     fingerprints = Fingerprints(parts["factory"], parts["robot"])
     # A generated world follows from its name and the source: all of them need not be built here.
@@ -176,34 +167,16 @@ def read_drives(plan: StudyPlan[Certified]) -> tuple[DriveRow, ...]:
     return tuple(drives[number] for number in plan.seeds)
 
 
-def picture_jobs(plan: StudyPlan[Certified], runs: Iterable[DriveRow]) -> list[BlockJob]:
+def picture_jobs(plan: StudyPlan[Certified], worst: Iterable[DriveRow]) -> list[BlockJob]:
     """Return a job for each of these runs, which drives it again on the CAN bus, for the places of its picture."""
     by_number = {run.number: (job, run) for job in plan.of(BlockJob) for run in job.runs}
     jobs = []
-    for each in runs:
+    for each in worst:
         job, run = by_number[each.seed]
         name, stem = f"picture of run {each.seed}", f"pictures/run-{each.seed}"
-        made = replace(job, seed=each.seed, name=name, stem=stem, robot_time_s=job.task.exam.duration_s)
-        jobs.append(replace(made, engines=ON_BUS, runs=(run,), places=True))
+        again = replace(job, seed=each.seed, name=name, stem=stem, robot_time_s=job.task.exam.duration_s)
+        jobs.append(replace(again, engines=ON_BUS, runs=(run,), before=each))
     return jobs
-
-
-def read_pictures(jobs: Iterable[BlockJob], runs: Iterable[DriveRow]) -> list[DriveRow]:
-    """Return the drives of picture jobs, with their places.
-
-    `runs`: as they were driven before. Raises BatchDiffersError where the outcome is another one, StudyError.
-    """
-    drives = []
-    for job, before in zip(jobs, runs, strict=True):
-        (again,) = job.results.read(job, BlockOutcome).drives
-        if again.stored() != before:
-            raise BatchDiffersError(
-                "the batch and the CAN bus differ; all results of the batch are refused",
-                where=f"run {before.seed} in world {before.world}",
-                do="report it, and give --engine can and a new folder with --out",
-            )
-        drives.append(again)
-    return drives
 
 
 ALL = "all"
@@ -394,17 +367,16 @@ def _format_witnesses(plan: StudyPlan[Certified]) -> str:
     return f"{len(plan.witnesses)} runs were driven on the CAN bus too, with equal results{left}."
 
 
-def draw_worst(
-    drives: Iterable[DriveRow], commands: Sequence[str], plan: StudyPlan[Certified]
-) -> Iterator[SavedFigure]:
-    """Draw each run into the folder of the results and yield it: run-NUMBER.png.
+def draw_worst(jobs: Iterable[BlockJob], commands: Sequence[str]) -> Iterator[SavedFigure]:
+    """Draw the run of each picture job into the folder of the results and yield it: run-NUMBER.png.
 
-    `commands`: by which a user drives each run again. Raises OSError.
+    `commands`: by which a user drives each run again. Raises StudyError, OSError.
     """
-    for drive, command in zip(drives, commands, strict=True):
-        path = plan.results.folder / f"run-{drive.seed}.png"
+    for job, command in zip(jobs, commands, strict=True):
+        (drive,) = job.results.read(job, BlockOutcome).drives
+        path = job.results.folder / f"run-{drive.seed}.png"
         figure, (axes,) = panels_of(1, 1, (5.6, 6.0))
-        draw_drive(axes, plan.jobs[0].factory, drive)
+        draw_drive(axes, job.factory, drive)
         axes.set_title(f"Run {drive.seed} in world {label_of(drive.world)}")
         legend_below(axes, columns=4)
         save(figure, path)
@@ -415,19 +387,19 @@ def draw_worst(
 
 def tell(
     plan: StudyPlan[Certified],
-    worst: Sequence[DriveRow],
     again: Sequence[BlockJob],
     words: Sequence[str],
     command: str,
 ) -> Told:
     """Write pictures and report into the folder of the results; return the tables.
 
-    `worst`: runs to show; `again`: jobs that drove them again for their pictures. `words`: options by which `kurt2rt
+    `again`: jobs that drove the worst runs again for their pictures. `words`: options by which `kurt2rt
     exam` drives a run so. `command`: typed words of the study, without those that belong to the machine alone. Raises
     BatchDiffersError if a run had another outcome when it was driven again, StudyError, OSError.
     """
     (task, knowledge, _, runs), path = plan.about, plan.results.folder / "report.html"
     broken = {run.number: run.broken for run in runs}
+    worst = [job.before for job in again if job.before is not None]
     summaries = list(summarise(plan, read_drives(plan)))
     tables = list(all_tables(plan, summaries, worst))
     commands = []
@@ -435,7 +407,7 @@ def tell(
         sensor = ["--broken-sensor", broken[run.seed]] if broken[run.seed] else []
         exam = ["kurt2rt", "exam", str(knowledge), "--seed", str(run.seed), "--world", run.world]
         commands.append(shlex.join([*exam, *sensor, *words]))
-    pictures = list(draw_worst(read_pictures(again, worst), commands, plan))
+    pictures = list(draw_worst(again, commands))
     told = (
         f"A taught robot drove {task.exam.duration_s:g} s in simulation, without a teacher, once for each number from "
         f"{runs[0].number} to {runs[-1].number}. A number makes the robot with the spread of its sensors, its noise "

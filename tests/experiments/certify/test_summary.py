@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from kurt2rt.experiments.certify import BrokenShare, draw_runs, summarise_runs, worst_of
+from kurt2rt.experiments.certify import Extent, draw_runs, summarise_runs, worst_of
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind
 from kurt2rt.experiments.study.intervals import wilson_interval
@@ -49,16 +49,16 @@ def test_worst_runs_are_ordered_and_leave_out_clean_ones() -> None:
 
 
 def test_run_follows_from_its_number() -> None:
-    runs = draw_runs(0, 3000, PLACES)
+    runs = draw_runs(Extent(0, 3000, PLACES))
     assert {run.world for run in runs if run.number == 17} < {"a", "b", "rooms-17"}
-    assert runs[10:30] == draw_runs(10, 20, PLACES)
+    assert runs[10:30] == draw_runs(Extent(10, 20, PLACES))
     assert all(abs([run.place for run in runs].count(place) - 1000) < 100 for place in PLACES)
 
 
 def test_share_of_the_runs_has_another_broken_sensor_each() -> None:
     sensors = ("s1", "s2", "s3")
-    runs = draw_runs(0, 1000, PLACES, BrokenShare(0.2, sensors))
+    runs = draw_runs(Extent(0, 1000, PLACES, broken_share=0.2), sensors)
     broken = [run.broken for run in runs if run.broken]
     assert 160 < len(broken) < 240
     assert set(broken) == {f"{sensor}={fault}" for sensor in sensors for fault in FaultKind}
-    assert [run._replace(broken="") for run in runs] == draw_runs(0, 1000, PLACES)
+    assert tuple(run._replace(broken="") for run in runs) == draw_runs(Extent(0, 1000, PLACES))
