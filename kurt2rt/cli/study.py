@@ -3,7 +3,7 @@
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import anyio
 import typer
@@ -55,6 +55,10 @@ study = typer.Typer(
     "Compare learners, certify knowledge, search settings.",
     no_args_is_help=True,
 )
+
+
+def _no_default(told: str, *names: str, **more: Any) -> Any:
+    return typer.Option(*names, help=told, show_default=False, **more)
 
 
 def _seeds(default: str) -> str:
@@ -174,38 +178,32 @@ def phases(options: _Phases) -> None:
 class _Transfer(_TaskOptions):
     there: Annotated[
         str | None,
-        typer.Option(
-            "--teacher-there",
-            metavar="NAME|PATH",
-            help="Scripted teacher of the new world. Default: the teacher of home.",
-            show_default=False,
+        _no_default(
+            "Scripted teacher of the new world. Default: the teacher of home.", "--teacher-there", metavar="NAME|PATH"
         ),
     ] = None
     seeds: Annotated[str, typer.Option(help=_seeds("1100-1119"))] = "1100-1119"
     world: Annotated[
         list[str] | None,
-        typer.Option(
-            help="New world, as in other commands; SEED in the name stands for the robot's seed. Repeat for several: "
+        _no_default(
+            "New world, as in other commands; SEED in the name stands for the robot's seed. Repeat for several: "
             "each robot is taught in each of them separately. Default: rooms-SEED, for streets streets-SEED.",
-            show_default=False,
         ),
     ] = None
     checkpoint: Annotated[
         list[int] | None,
-        typer.Option(
+        _no_default(
+            "Examine the robot after this number of presses in the new world; repeat for several. Default: 0, 2, "
+            "5, 10, 15, 20.",
             min=0,
-            help="Examine the robot after this number of presses in the new world; repeat for several. "
-            "Default: 0, 2, 5, 10, 15, 20.",
-            show_default=False,
         ),
     ] = None
     seconds: Annotated[
         float | None,
-        typer.Option(
+        _no_default(
+            "Longest time of teaching in the new world. Default: that of the lesson at home.",
             metavar="SECONDS",
             min=1.0,
-            help="Longest time of teaching in the new world. Default: that of the lesson at home.",
-            show_default=False,
         ),
     ] = None
     out: Annotated[Path, results_option("results/transfer")] = Path("results/transfer")
@@ -229,13 +227,14 @@ def transfer(options: _Transfer) -> None:
 
     Results are kept in --out, so an interrupted run goes on where it was.
     """
-    from kurt2rt.experiments.transfer import AFTER, NewWorlds, make_plan, tell
+    from kurt2rt.experiments.transfer import AFTER, Transfer, make_plan, tell
 
     task, robot = options.load()
     places = options.world or ["streets-SEED" if task.name == "streets" else "rooms-SEED"]
-    new = NewWorlds(tuple(places), tuple(sorted(set(options.checkpoint or AFTER))), options.seconds, options.there)
+    after = tuple(sorted(set(options.checkpoint or AFTER)))
+    about = Transfer(task, tuple(places), after, options.seconds, options.there)
     parts, engine = job_parts(robot, options.out), options.requested_engine()
-    plan = make_plan(task, new, parse_seeds(options.seeds), parts, engine=engine)
+    plan = make_plan(about, parse_seeds(options.seeds), parts, engine=engine)
     run_study(plan, options, lambda _: tell(plan))
 
 
@@ -243,11 +242,10 @@ def transfer(options: _Transfer) -> None:
 class _Compare(EngineOptions):
     learner: Annotated[
         list[str] | None,
-        typer.Option(
+        _no_default(
+            "Learner: a name, or module:Name of your own, also from this folder. GATE is the threshold from which"
+            " it asks. Repeat for several. Default: 1-nn, k-nn, weighted-vote, svm, tree.",
             metavar="NAME[=GATE]",
-            help="Learner: a name, or module:Name of your own, also from this folder. GATE is the threshold from which "
-            "it asks. Repeat for several. Default: 1-nn, k-nn, weighted-vote, svm, tree.",
-            show_default=False,
         ),
     ] = None
     task: Annotated[list[str] | None, task_option("Repeat for several. Default: wall_following.")] = None
@@ -255,11 +253,10 @@ class _Compare(EngineOptions):
     seeds: Annotated[str, typer.Option(help=_seeds("4106-4125"))] = "4106-4125"
     checkpoint: Annotated[
         list[int] | None,
-        typer.Option(
-            min=1,
-            help="Examine the robot after this number of presses, and at the end of its lesson; repeat for several. "
+        _no_default(
+            "Examine the robot after this number of presses, and at the end of its lesson; repeat for several. "
             "Default: 10, 20, 40.",
-            show_default=False,
+            min=1,
         ),
     ] = None
     changes: Changes = None
@@ -362,12 +359,11 @@ class _Certify(JobOptions):
     ] = None
     world: Annotated[
         list[str] | None,
-        typer.Option(
+        _no_default(
+            "World to drive in; repeat for several: each run draws one of them. SEED in the name stands for the "
+            "run's number: rooms-SEED is another room for each run. Default: those of the task's exam, and "
+            "rooms-SEED for wall_following.",
             metavar="NAME|PATH",
-            help="World to drive in; repeat for several: each run draws one of them. SEED in the name stands for the "
-            "run's number: rooms-SEED is another room for each run. Default: those of the task's exam, and rooms-SEED "
-            "for wall_following.",
-            show_default=False,
         ),
     ] = None
     first: Annotated[

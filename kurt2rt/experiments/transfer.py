@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import ClassVar, NamedTuple
 
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from config.settings import SettingsError
@@ -50,16 +49,30 @@ PURPOSE = "new-world"
 """Purpose of the simulation in which a robot is taught on: another start and other noise than at home."""
 
 
-def task_in(world: str, task: TaskSettings, teacher: str | None = None) -> TaskSettings:
-    """Return the task to teach and examine in a new world, by its name; `teacher`: None: the teacher of home.
+class Transfer(NamedTuple):
+    """Task that is taught at home, the new worlds, and the lessons there."""
 
-    Raises config.settings.SettingsError if the teacher cannot be loaded.
-    """
-    if teacher is not None:
-        task = taught_by(task, load_teacher(teacher))
-    teaching = task.teaching.model_copy(update={"world": world})
-    exam = task.exam.model_copy(update={"worlds": (world,)})
-    return task.model_copy(update={"teaching": teaching, "exam": exam})
+    task: TaskSettings
+    places: tuple[str, ...]
+    """Names of new worlds; SEED in a name stands for the robot's seed."""
+    after: tuple[int, ...] = AFTER
+    """Numbers of presses after which a robot is examined in the new world, ascending."""
+    seconds: float | None = None
+    """Longest time of teaching there in s; None: that of the lesson at home."""
+    teacher: str | None = None
+    """Name of another teacher there; None: the teacher of home."""
+
+    def task_in(self, world: str) -> TaskSettings:
+        """Return the task to teach and examine in a new world. Raises SettingsError if its teacher cannot be loaded."""
+        task = self.task if self.teacher is None else taught_by(self.task, load_teacher(self.teacher))
+        teaching = task.teaching.model_copy(update={"world": world})
+        exam = task.exam.model_copy(update={"worlds": (world,)})
+        return task.model_copy(update={"teaching": teaching, "exam": exam})
+
+    @property
+    def lasts_s(self) -> float:
+        """Longest time of teaching in a new world."""
+        return self.seconds or self.task.teaching.duration_s
 
 
 class HomeOutcome(TaughtOutcome):
@@ -134,14 +147,9 @@ class TransferJob(StudyJob):
 
     outcome = TransferOutcome
     gives_exams: ClassVar[bool] = True
-    teacher: str | None
-    """Name of another teacher in the new world; None: the teacher of home."""
+    about: Transfer
     place: str
     """Name of the new world, with SEED where it is another world for each robot."""
-    after: tuple[int, ...]
-    """Numbers of presses after which the robot is examined, ascending."""
-    seconds: float
-    """Longest time of teaching in the new world."""
     home: HomeJob
     """Job of an earlier wave, which taught the robot at home; its knowledge is copied."""
 
@@ -150,11 +158,11 @@ class TransferJob(StudyJob):
 
         Raises StudyError without the result of home, and the errors of all jobs.
         """
-        task = task_in(world_of(self.place, self.seed), self.task, self.teacher)
+        task, after = self.about.task_in(world_of(self.place, self.seed)), self.about.after
         copy_knowledge(self.home.knowledge, knowledge)
         known = len(read_lessons(knowledge, self.robot, task))
         # It ends before another press; a robot with knowledge is corrected from the beginning.
-        plan = LessonPlan(((Phase.CORRECTIONS, self.seconds),), purpose=PURPOSE, most_presses=max(self.after))
+        plan = LessonPlan(((Phase.CORRECTIONS, self.about.lasts_s),), purpose=PURPOSE, most_presses=max(after))
         given = await self.teach(knowledge, report, task, plan)
         lesson, events = given
         there = _examiner(self, task, report)
@@ -163,20 +171,18 @@ class TransferJob(StudyJob):
         async def examine(events: Sequence[TeachingEvent], _labels: object) -> tuple[DriveRow, ...]:
             return (await there.examine(policy, events),)
 
-        checkpoints = await run_checkpoints(given, self.after, self.robot.cycle_s, examine, known=known)
+        checkpoints = await run_checkpoints(given, after, self.robot.cycle_s, examine, known=known)
         at_end = checkpoints[-1].lessons
         when_right = next((each.lessons for each in checkpoints if each.passed), at_end)
-        home = await self._drive_at_home(events[: known + at_end], report)
+        homes = {n: await self._drive_at_home(events[: known + n], report) for n in {at_end, when_right}}
         return TransferOutcome(
             made_of=self.made_of,
             seed=self.seed,
-            lesson=lesson.counts.model_copy(update={"presses": min(lesson.presses, max(self.after))}),
+            lesson=lesson.counts.model_copy(update={"presses": min(lesson.presses, max(after))}),
             checkpoints=tuple(checkpoints),
             policy=policy,
-            home_when_right=home
-            if when_right == at_end
-            else await self._drive_at_home(events[: known + when_right], report),
-            home=home,
+            home_when_right=homes[when_right],
+            home=homes[at_end],
         )
 
     async def _drive_at_home(self, events: Sequence[TeachingEvent], report: Report) -> DriveRow:
@@ -192,41 +198,15 @@ def _examiner(job: StudyJob, task: TaskSettings, report: Report) -> Examiner:
     return Examiner(job, task, task.teaching.world, report)
 
 
-class NewWorlds(NamedTuple):
-    """New worlds and the lessons there."""
-
-    places: tuple[str, ...]
-    """Names of worlds; SEED in a name stands for the robot's seed."""
-    after: tuple[int, ...] = AFTER
-    """Numbers of presses after which a robot is examined, ascending."""
-    seconds: float | None = None
-    """Longest time of teaching in s; None: that of the lesson at home."""
-    teacher: str | None = None
-    """Name of another teacher there; None: the teacher of home."""
-
-
-class Transfer(NamedTuple):
-    """Task that was taught at home, and when its robots are examined."""
-
-    task: TaskSettings
-    after: tuple[int, ...]
-    """Numbers of presses after which a robot is examined in the new world, ascending."""
-
-
 def make_plan(
-    task: TaskSettings,
-    new: NewWorlds,
-    seeds: Sequence[int],
-    parts: JobParts,
-    *,
-    engine: EngineRequest = EngineRequest.CAN,
+    about: Transfer, seeds: Sequence[int], parts: JobParts, *, engine: EngineRequest = EngineRequest.CAN
 ) -> StudyPlan[Transfer]:
     """Check task and worlds, and return the jobs: each seed's robot at home, and in each new world on the CAN bus.
 
     Raises config.settings.SettingsError if the task and a world do not fit, or a new world is that of home.
     """
-    home, seconds = task.teaching.world, new.seconds or task.teaching.duration_s
-    worlds = [world_of(place, seed) for place in new.places for seed in seeds]
+    task, home = about.task, about.task.teaching.world
+    worlds = [world_of(place, seed) for place in about.places for seed in seeds]
     if home in worlds:
         raise SettingsError("is the world of home, not a new one", where=f"world {home}", do="name another one")
     require_places(parts["factory"], task, (home, *worlds))
@@ -247,26 +227,24 @@ def make_plan(
 
     def job(place: str, seed: int) -> TransferJob:
         world = world_of(place, seed)
-        own = task_in(world, task, new.teacher).teaching.model_dump_json(serialize_as_any=True)
+        own = about.task_in(world).teaching.model_dump_json(serialize_as_any=True)
         file_name = re.sub(r"[^A-Za-z0-9_-]+", "-", Path(place).with_suffix("").as_posix()).strip("-")
         return TransferJob(
             **parts,
             task=task,
             seed=seed,
-            made_of=fingerprints.of(task, (home, world), own, repr((new.after, seconds))),
+            made_of=fingerprints.of(task, (home, world), own, repr((about.after, about.lasts_s))),
             name=f"{task.name} in {world}, seed {seed}",
             stem=f"{file_name}/{task.name}-{seed}",
-            robot_time_s=seconds + (len(new.after) + 3) * exam_s,
+            robot_time_s=about.lasts_s + (len(about.after) + 3) * exam_s,
             wave=1,
-            teacher=new.teacher,
+            about=about,
             place=place,
-            after=new.after,
-            seconds=seconds,
             home=home_jobs[seed],
         )
 
-    there = (job(place, seed) for place in dict.fromkeys(new.places) for seed in seeds)
-    plan = StudyPlan(Transfer(task, new.after), tuple(seeds), (*home_jobs.values(), *there))
+    there = (job(place, seed) for place in dict.fromkeys(about.places) for seed in seeds)
+    plan = StudyPlan(about, tuple(seeds), (*home_jobs.values(), *there))
     return plan.driven(engine, parts["robot"])
 
 
@@ -313,12 +291,10 @@ def _judged_of(group: There) -> tuple[TransferOutcome, ...]:
 
 
 def _right_after(group: There, presses: int) -> int:
-    """Return the number of robots that pass the exam in the new world after so many presses."""
     return sum(point.passed for each in _judged_of(group) for point in each.checkpoints if point.presses == presses)
 
 
 def _right_by(group: There, presses: int) -> int:
-    """Return the number of robots that pass an exam in the new world after so many presses or fewer."""
     return sum(each.presses_until_right <= presses for each in _judged_of(group))
 
 
@@ -365,7 +341,7 @@ def _curve_table(study: TransferStudy) -> Table:
 
 
 def _teaching_table(study: TransferStudy) -> Table:
-    (task, after), home = study.plan.about, study.home.of
+    task, after, home = study.plan.about.task, study.plan.about.after, study.home.of
 
     def until(name: str, form: str, never: str) -> Callable[[There], str]:
         def cell(group: There) -> str:
@@ -431,7 +407,7 @@ def drive_text(drive: DriveRow) -> str:
 
 
 def _median(values: list[float]) -> float:
-    """Return the median of counts or times in s, which may be infinite; of two middle values their mean."""
+    """Return the median of values that may be infinite; of two middle values their mean."""
     ordered = sorted(values)
     low, high = ordered[(len(ordered) - 1) // 2], ordered[len(ordered) // 2]
     return low if low == high else (low + high) / 2
@@ -441,22 +417,18 @@ def draw_curves(study: TransferStudy, path: Path) -> None:
     """Draw the curves, a panel for each new world, as a PNG to `path`. Raises OSError."""
     figure = Figure(figsize=(5.4 * len(study.there), 5.0), layout="constrained")
     panels = figure.subplots(1, len(study.there), squeeze=False, sharey=True).flatten().tolist()
+    after = study.plan.about.after
     for axes, group in zip(panels, study.there, strict=True):
-        if _judged_of(group):
-            _draw(axes, study.plan.about.after, group)
+        if judged := len(_judged_of(group)):
+            axes.plot(after, [_right_by(group, n) / judged for n in after], color=_COLOUR, linestyle=":", linewidth=1.2)
+            counts = [_right_after(group, presses) for presses in after]
+            low, high = zip(*(wilson_interval(count, judged) for count in counts), strict=True)
+            axes.plot(after, [count / judged for count in counts], color=_COLOUR, marker="o", label=f"n = {judged}")
+            axes.fill_between(after, low, high, color=_COLOUR, alpha=0.15)
+            axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.14), frameon=False)
         axes.set_title(f"new world: {Path(group.of).stem}", fontsize="medium")
         axes.set_xlabel("presses in the new world (dotted: taught until right)")
         axes.set_ylim(-0.03, 1.03)
         axes.grid(alpha=0.3)
     panels[0].set_ylabel("share of robots that are right there")
     save(figure, path)
-
-
-def _draw(axes: Axes, after: tuple[int, ...], group: There) -> None:
-    judged = len(_judged_of(group))
-    axes.plot(after, [_right_by(group, n) / judged for n in after], color=_COLOUR, linestyle=":", linewidth=1.2)
-    counts = [_right_after(group, presses) for presses in after]
-    low, high = zip(*(wilson_interval(count, judged) for count in counts), strict=True)
-    axes.plot(after, [count / judged for count in counts], color=_COLOUR, marker="o", label=f"n = {judged}")
-    axes.fill_between(after, low, high, color=_COLOUR, alpha=0.15)
-    axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.14), frameon=False)

@@ -14,7 +14,6 @@ from kurt2rt.experiments.study.jobs import Results
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.transfer import (
     HomeJob,
-    NewWorlds,
     Transfer,
     TransferJob,
     TransferOutcome,
@@ -27,11 +26,11 @@ from tests.experiments.helpers import short_task
 from tests.experiments.study.here import carry_out, parts_in
 
 AFTER = (0, 2, 5)
-NEW = NewWorlds(("rooms-SEED",), AFTER, 15.0)
+NEW = Transfer(short_task(exam_s=4.0), ("rooms-SEED",), AFTER, 15.0)
 
 
-def plan_in(folder: Path, new: NewWorlds = NEW) -> StudyPlan[Transfer]:
-    return make_plan(short_task(exam_s=4.0), new, (1,), parts_in(folder))
+def plan_in(folder: Path, new: Transfer = NEW) -> StudyPlan[Transfer]:
+    return make_plan(new, (1,), parts_in(folder))
 
 
 @dataclass(frozen=True)
@@ -73,7 +72,7 @@ def test_robot_goes_on_from_what_it_was_taught_at_home(done: Done) -> None:
 
 def test_checkpoint_is_what_a_shorter_lesson_teaches(done: Done) -> None:
     job = done.job
-    shorter = replace(job, after=(0, 2), stem="shorter")
+    shorter = replace(job, about=NEW._replace(after=(0, 2)), stem="shorter")
     shorter.run(lambda _: None)
     outcome = done.results.read(shorter, TransferOutcome)
     _, point, _ = done.outcome.checkpoints
@@ -94,7 +93,7 @@ def test_lessons_of_a_press_come_before_the_next_press() -> None:
 
 
 def test_robot_that_was_not_taught_on_drives_at_home_as_before(done: Done) -> None:
-    job = replace(done.job, after=(0,), stem="not-taught")
+    job = replace(done.job, about=NEW._replace(after=(0,)), stem="not-taught")
     job.run(lambda _: None)
     outcome, (before,) = done.results.read(job, TransferOutcome), read_study(done.plan).home.rows
     assert outcome.lesson.presses == outcome.checkpoints[0].lessons == 0
@@ -112,4 +111,4 @@ def test_tables_and_figure_show_each_world(done: Done) -> None:
 
 def test_home_is_no_new_world(tmp_path: Path) -> None:
     with pytest.raises(SettingsError, match=r"world a\b"):
-        plan_in(tmp_path, NewWorlds(("a",)))
+        plan_in(tmp_path, NEW._replace(places=("a",)))

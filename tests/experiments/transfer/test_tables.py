@@ -14,7 +14,6 @@ from kurt2rt.experiments.transfer import (
     make_plan,
     verdicts,
 )
-from tests.experiments.helpers import short_task
 from tests.experiments.rows import FAILED, MADE_OF, NOT_JUDGED, lesson, row, titled
 from tests.experiments.study.here import parts_in
 from tests.experiments.transfer.test_study import AFTER, NEW
@@ -52,7 +51,7 @@ def robot(seed: int, *there: str, home: str = "right") -> TransferOutcome:
 def robots(*there: tuple[str, ...], home: str = "right") -> TransferStudy:
     """Return the study of robots from seed 1100 on, all of which were right at home before."""
     outcomes = tuple(robot(seed, *each, home=home) for seed, each in enumerate(there, start=1100))
-    plan = make_plan(short_task(exam_s=4.0), NEW, [each.seed for each in outcomes], parts_in())
+    plan = make_plan(NEW, [each.seed for each in outcomes], parts_in())
     home_outcomes = tuple(
         HomeOutcome(
             made_of=MADE_OF,
