@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 from config.settings import Settings, SettingsError, load_settings
 from config.settings_files import find_config
 from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.study.jobs import shortened_task
 from simbridge.contracts.simulation import SimulationFactory
 
 Share = Annotated[float, Field(gt=0, le=1)]
@@ -131,37 +132,29 @@ class Extent:
         return self == WHOLE
 
     def task(self, task: TaskSettings) -> TaskSettings:
-        """Return the task with less time; both phases of training are shortened in proportion."""
-        teaching, exam = task.teaching, task.exam
-        if self.most_teaching_s is not None and teaching.duration_s > self.most_teaching_s:
-            share = self.most_teaching_s / teaching.duration_s
-            shorter = {
-                name: float(round(getattr(teaching, name) * share)) for name in ("supervised_s", "corrections_s")
-            }
-            teaching = teaching.model_copy(update=shorter)
-        if self.most_exam_s is not None and exam.duration_s > self.most_exam_s:
-            exam = exam.model_copy(update={"duration_s": self.most_exam_s})
-        return task.model_copy(update={"teaching": teaching, "exam": exam})
+        """Return the task with less time."""
+        return shortened_task(task, self.most_teaching_s, self.most_exam_s)
 
     def paper(self, paper: PaperSettings) -> PaperSettings:
         """Return the settings of the study with fewer generated worlds and less growth."""
-        experiments = tuple(each.model_copy(update={"unseen": self._unseen(each.unseen)}) for each in paper.experiments)
-        return paper.model_copy(update={"experiments": experiments, "growth": self._growth(paper.growth)})
 
-    def _unseen(self, unseen: UnseenSettings | None) -> UnseenSettings | None:
-        if unseen is None or self.most_unseen is None:
-            return unseen
-        return unseen.model_copy(update={"count": min(unseen.count, self.most_unseen)})
+        def least(value: float, most: float | None) -> float:
+            return value if most is None else min(value, most)
 
-    def _growth(self, growth: GrowthSettings) -> GrowthSettings:
-        update: dict[str, object] = {}
-        if self.most_radii is not None:
-            update["radii"] = growth.radii[-self.most_radii :]
-        if self.most_robots is not None:
-            update["robots"] = min(growth.robots, self.most_robots)
-        if self.most_growth_s is not None:
-            update["duration_s"] = min(growth.duration_s, self.most_growth_s)
-        return growth.model_copy(update=update)
+        experiments = []
+        for each in paper.experiments:
+            unseen = each.unseen and each.unseen.model_copy(
+                update={"count": least(each.unseen.count, self.most_unseen)}
+            )
+            experiments.append(each.model_copy(update={"unseen": unseen}))
+        growth = paper.growth.model_copy(
+            update={
+                "radii": paper.growth.radii[-self.most_radii :] if self.most_radii else paper.growth.radii,
+                "robots": least(paper.growth.robots, self.most_robots),
+                "duration_s": least(paper.growth.duration_s, self.most_growth_s),
+            }
+        )
+        return paper.model_copy(update={"experiments": tuple(experiments), "growth": growth})
 
 
 WHOLE = Extent()

@@ -1,24 +1,21 @@
 """Steps of one robot's training: the path of all phases, and the branches with their wrong actions and critics."""
 
 import random
-from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Literal, Self
+from typing import Literal, Self, TypeVar
 
-from behaviors.judges.judge import Judge
 from config.settings import Settings, SettingsError
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.phase_settings import PhasesSettings
-from kurt2rt.core.reinforcement.settings import AutonomousValues
 from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated, RlaDeleted, TeachingEvent
 from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, SignalTimes, Signs
+from kurt2rt.experiments.study.jobs import shortened_task
 
 Critic = Literal["own", "taught", "shuffled"]
 """Critic before the step: the knowledge's own, the one of this robot's phase 4, or a shuffled one."""
@@ -53,6 +50,7 @@ class Step(StrEnum):
     INTACT = "intact-autonomous", "intact set, critic alone"
 
 
+SettingsT = TypeVar("SettingsT", bound=Settings)
 _QUICK_TEACHING_S, _QUICK_EXAM_S, _QUICK_STEP_S, _QUICK_ALONE_S = 40.0, 6.0, 10.0, 40.0
 _QUICK_SHARE = 0.2
 """Factor of the intervals in a quick run."""
@@ -119,33 +117,17 @@ class _Plans:
     task: TaskSettings
     phases: PhasesSettings
 
-    @property
-    def reward_times(self) -> SignalTimes:
-        """Return the intervals of the rewards."""
-        signals = self.phases.signals
-        return SignalTimes(
-            signals.bad_every_s, signals.good_every_s, patience_s=signals.patience_s, most_blame=signals.most_blame
-        )
-
     def asking(self) -> LessonPlan:
         """Return the plan of a teacher who answers only."""
-        return LessonPlan(
-            ((Phase.SUPERVISED, self.phases.repair_s),),
-            "repair",
-            rescues_who_asks=True,
-            reposition_every_s=self.phases.reposition_every_s,
-        )
+        times, moved_s = ((Phase.SUPERVISED, self.phases.repair_s),), self.phases.reposition_every_s
+        return LessonPlan(times, "repair", rescues_who_asks=True, reposition_every_s=moved_s)
 
     def rewards(self, lasts_s: float, purpose: str, signs: Signs) -> LessonPlan:
         """Return the plan of a teacher who answers and rewards, for `lasts_s` seconds."""
-        return LessonPlan(
-            ((Phase.REINFORCEMENT, lasts_s),),
-            purpose,
-            signs,
-            self.reward_times,
-            rescues_who_asks=True,
-            reposition_every_s=self.phases.reposition_every_s,
-        )
+        told, moved_s = self.phases.signals, self.phases.reposition_every_s
+        times = SignalTimes(told.bad_every_s, told.good_every_s, patience_s=told.patience_s, most_blame=told.most_blame)
+        phases = ((Phase.REINFORCEMENT, lasts_s),)
+        return LessonPlan(phases, purpose, signs, times, rescues_who_asks=True, reposition_every_s=moved_s)
 
     def appraisals(self) -> LessonPlan:
         """Return the plan of a teacher who teaches the critic."""
@@ -163,13 +145,8 @@ class _Plans:
 
     def autonomous(self, lasts_s: float, purpose: str) -> LessonPlan:
         """Return the plan without a teacher, for `lasts_s` seconds: rescues come later, none is planned."""
-        return LessonPlan(
-            ((Phase.AUTONOMOUS, lasts_s),),
-            purpose,
-            rescues_who_asks=True,
-            rescue_after_s=self.task.exam.stuck_after_s,
-            reposition_every_s=0.0,
-        )
+        phases, stuck_s = ((Phase.AUTONOMOUS, lasts_s),), self.task.exam.stuck_after_s
+        return LessonPlan(phases, purpose, rescues_who_asks=True, rescue_after_s=stuck_s, reposition_every_s=0.0)
 
 
 def steps_of(task: TaskSettings) -> Iterator[PhaseStep]:
@@ -213,46 +190,32 @@ def _branch_steps(plans: _Plans) -> Iterator[PhaseStep]:
 
 
 def shortened(task: TaskSettings, robot: RobotSettings) -> TaskSettings:
-    """Return the task with all steps so short that they say nothing but that everything works."""
-    share = min(1.0, _QUICK_TEACHING_S / task.teaching.duration_s)
-    times = {name: float(round(getattr(task.teaching, name) * share)) for name in ("supervised_s", "corrections_s")}
-    worlds = task.exam.worlds[:1]
-    exam = {"worlds": worlds, "duration_s": min(task.exam.duration_s, _QUICK_EXAM_S)}
-    return task.model_copy(
-        update={
-            "teaching": task.teaching.model_copy(update=times),
-            "exam": task.exam.model_copy(update=exam),
-            "phases": phases_of(task).shortened(_QUICK_STEP_S, worlds, _QUICK_ALONE_S, _QUICK_SHARE),
-            "critic": _hastened(critic_of(task.critic, robot)),
-            "reinforcement": task.reinforcement.model_copy(update={"alone": _near_sinking(task.reinforcement.alone)}),
-        }
-    )
+    """Return the task with all steps so short that they say nothing but that everything works.
 
+    A few rewards can withdraw a value, and the critic is trusted, measures and changes after some seconds.
+    """
 
-def _near_sinking(worths: AutonomousValues) -> AutonomousValues:
-    """Return values that a few rewards can withdraw."""
-    names = ("first_value", "sunk_below", "well_above")
-    return worths.model_copy(update={name: _QUICK_SHARE * getattr(worths, name) for name in names})
+    def hastened(part: SettingsT, *names: str) -> SettingsT:
+        return part.model_copy(update={name: _QUICK_SHARE * getattr(part, name) for name in names})
 
-
-def _hastened(critic: CriticSettings) -> CriticSettings:
-    """Return a critic that is trusted, measures and changes after some seconds."""
-    agreement, every = critic.agreement, critic.signal_every_s
-    few = max(2, round(_QUICK_SHARE * agreement.least))
-    heard = {
-        "bound": _QUICK_SHARE * agreement.bound,
-        "least": few,
-        "window": 2 * few,
-        "apart_s": _QUICK_SHARE * agreement.apart_s,
+    critic, worlds = critic_of(task.critic, robot), task.exam.worlds[:1]
+    few = max(2, round(_QUICK_SHARE * critic.agreement.least))
+    agreement = hastened(critic.agreement, "bound", "apart_s").model_copy(update={"least": few, "window": 2 * few})
+    hasty = {
+        "agreement": agreement,
+        "signal_every_s": hastened(critic.signal_every_s, "bad", "good"),
+        "need": critic.need.model_copy(update={"bad_share": 0.0, "first_s": 0.0}),
+        "best": critic.best.model_copy(update={"window_s": _QUICK_ALONE_S / 8}),
     }
-    return critic.model_copy(
+    alone = hastened(task.reinforcement.alone, "first_value", "sunk_below", "well_above")
+    phases = phases_of(task).shortened(_QUICK_STEP_S, worlds, _QUICK_ALONE_S, _QUICK_SHARE)
+    exam = task.exam.model_copy(update={"worlds": worlds})
+    short = shortened_task(task.model_copy(update={"exam": exam}), _QUICK_TEACHING_S, _QUICK_EXAM_S)
+    return short.model_copy(
         update={
-            "agreement": agreement.model_copy(update=heard),
-            "signal_every_s": every.model_copy(
-                update={"bad": _QUICK_SHARE * every.bad, "good": _QUICK_SHARE * every.good}
-            ),
-            "need": critic.need.model_copy(update={"bad_share": 0.0, "first_s": 0.0}),
-            "best": critic.best.model_copy(update={"window_s": _QUICK_ALONE_S / 8}),
+            "phases": phases,
+            "critic": critic.model_copy(update=hasty),
+            "reinforcement": task.reinforcement.model_copy(update={"alone": alone}),
         }
     )
 
@@ -320,24 +283,3 @@ class Judgement(Settings):
     said: int | None
     """Opinion of the critic; None: unknown."""
     ticks: int
-
-
-class Scoring:
-    """Counter of the pairs of opinions of critic and judge, while the robot drives."""
-
-    def __init__(self, judge: Judge) -> None:
-        self._judge = judge
-        self._ticks: Counter[tuple[int, int | None]] = Counter()
-
-    def on_tick(self, record: TickRecord) -> None:
-        """Count the pair of opinions of critic and judge in one tick; call it on every tick."""
-        if record.appraisal_features is None or not record.decision.driving:
-            return
-        said = None if record.opinion is None else record.opinion.said
-        self._ticks[self._judge.judge(record.appraisal_features), said] += 1
-
-    @property
-    def judgements(self) -> Iterator[Judgement]:
-        """Pairs of opinions of judge and critic, each with its number of ticks."""
-        for judged, said in sorted(self._ticks, key=str):
-            yield Judgement(judged=judged, said=said, ticks=self._ticks[judged, said])

@@ -1,12 +1,14 @@
 """Phases study: every step of every robot's training as a job, with the exams after it."""
 
 import shutil
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
+from behaviors.metrics.task_metric import TaskMetric
 from behaviors.repertoire import primitive_speeds
 from config.settings import Settings
 from hal.robot_settings import RobotSettings
@@ -19,6 +21,7 @@ from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import Engine
@@ -30,7 +33,6 @@ from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
 from kurt2rt.experiments.phases.steps import (
     Judgement,
     PhaseStep,
-    Scoring,
     Step,
     corrupt,
     critic_lessons,
@@ -104,16 +106,11 @@ class JobOutcome(Outcome):
     """Drives of the teacher's own policy; of the first job alone."""
 
 
-def replay_events(task: TaskSettings, robot: RobotSettings, events: Iterable[TeachingEvent]) -> RlaSystem:
-    """Return the RLA system with all its levels, for counting: it does not match by the task's weights.
-
-    Raises SettingsError if the situation of the task cannot be loaded, InvalidEventError if an event does not
-    fit.
-    """
+def _system_of(task: TaskSettings, robot: RobotSettings, events: Iterable[TeachingEvent]) -> RlaSystem:
+    """Return the RLA system with all its levels, for counting: it does not match by the task's weights."""
     dimensions = load_situation(task.situation, robot.infrared.names).dimensions
-    system = RlaSystem(
-        dimensions, task.learning.radius, others={CRITIC: Space(len(load_critic(task.critic).names), 1.0, None)}
-    )
+    critic = Space(len(load_critic(task.critic).names), 1.0, None)
+    system = RlaSystem(dimensions, task.learning.radius, others={CRITIC: critic})
     system.apply_all(events)
     return system
 
@@ -184,11 +181,17 @@ class PhasesJob(StudyJob):
         Raises SettingsError if task and world do not fit.
         """
         assert self.task.judge is not None
-        scoring = Scoring(self.task.judge.build())
-        setup = replace(exam, appraises=True, on_tick=lambda record, _metric: scoring.on_tick(record))
+        judge, ticks = self.task.judge.build(), Counter[tuple[int, int | None]]()
+
+        def on_tick(record: TickRecord, _metric: TaskMetric) -> None:
+            if record.appraisal_features is not None and record.decision.driving:
+                said = None if record.opinion is None else record.opinion.said
+                ticks[judge.judge(record.appraisal_features), said] += 1
+
         # A batch has no record of each tick.
-        await self._drive([setup], report, Engine.CAN)
-        return tuple(scoring.judgements)
+        await self._drive([replace(exam, appraises=True, on_tick=on_tick)], report, Engine.CAN)
+        pairs = sorted(ticks.items(), key=str)
+        return tuple(Judgement(judged=judged, said=said, ticks=count) for (judged, said), count in pairs)
 
     def exam_of(
         self, events: Sequence[TeachingEvent], saved: Statistics | None = None, alone: Statistics | None = None
@@ -198,14 +201,8 @@ class PhasesJob(StudyJob):
         `saved`: values that rewards had given; `alone`: values of phase 5; None: none.
         """
         # A robot without knowledge only stands: its exam need not last.
-        return ExamSetup(
-            self.task.teaching.world,
-            self.seed,
-            events=events,
-            saved=saved,
-            autonomous_values=alone,
-            stuck_ends=not events,
-        )
+        world, stuck_ends = self.task.teaching.world, not events
+        return ExamSetup(world, self.seed, events=events, saved=saved, autonomous_values=alone, stuck_ends=stuck_ends)
 
     async def _drive(self, exams: Sequence[ExamSetup], report: Report, engine: Engine) -> list[DriveRow]:
         return await run_drives(self.factory, self.robot, self.task, exams, report, engine)
@@ -225,7 +222,7 @@ class FirstPhasesJob(PhasesJob):
         stages = [
             _stage_outcome(
                 name,
-                replay_events(self.task, self.robot, known),
+                _system_of(self.task, self.robot, known),
                 _teaching_outcome(lesson, events) if name == Step.PHASE_2 else None,
                 await self.examine(self.exam_of(known), teachers, report),
             )

@@ -309,6 +309,17 @@ def curriculum_time_s(task: TaskSettings, worlds: int) -> float:
     return task.teaching.duration_s + 2 * worlds * task.exam.duration_s
 
 
+def shortened_task(task: TaskSettings, most_teaching_s: float | None, most_exam_s: float | None) -> TaskSettings:
+    """Return the task with less time; both phases of training are shortened in proportion. None: no limit."""
+    teaching, exam = task.teaching, task.exam
+    if most_teaching_s is not None and teaching.duration_s > most_teaching_s:
+        share, phases = most_teaching_s / teaching.duration_s, ("supervised_s", "corrections_s")
+        teaching = teaching.model_copy(update={name: float(round(getattr(teaching, name) * share)) for name in phases})
+    if most_exam_s is not None and exam.duration_s > most_exam_s:
+        exam = exam.model_copy(update={"duration_s": most_exam_s})
+    return task.model_copy(update={"teaching": teaching, "exam": exam})
+
+
 def world_of(place: str, seed: int) -> str:
     """Return the name of one robot's world, with its seed where `place` has SEED."""
     return place.replace(SEED, str(seed))
