@@ -87,7 +87,7 @@ class SearchSettings(Settings):
     engine: Engine = Engine.COMPILED
     """Drives lessons and exams."""
     objective: Objective = "passed_then_presses"
-    """First the share of exams passed; among equal shares, less effort is better (`score.effort`)."""
+    """First the share of exams passed; among equal shares, less effort is better (`plan.effort`)."""
     trials: Count
     at_once: Annotated[int, Field(ge=1, le=64)] = 4
     """Number of trials that are chosen together, on what the trials before them showed."""

@@ -155,7 +155,7 @@ def write_found(plan: SearchPlan, check: CheckResult, command: str, path: Path) 
         "search": _robots_told(search.search),
         "check": _robots_told(plan.check),
         "shipped": {"values": dict(plan.space.shipped), **_counts(check.shipped, search.objective)},
-        "checked": [_checked(each, check) for each in check.checked],
+        "checked": [_checked(each, check.objective) for each in check.checked],
         "verdict": verdict_text(plan, check),
         # Keys as --set takes them; empty if the shipped settings stay.
         "changes": {} if found is None else plan.space.changes(found.values),
@@ -164,31 +164,23 @@ def write_found(plan: SearchPlan, check: CheckResult, command: str, path: Path) 
 
 
 def _robots_told(robots: Robots) -> dict[str, Any]:
-    seeds = robots.seeds.seeds
-    return {"seeds": f"{seeds[0]}-{seeds[-1]}", "worlds": list(robots.worlds)}
+    return {"seeds": spans(robots.seeds.seeds), "worlds": list(robots.worlds)}
 
 
-def _checked(each: CheckedSettings, check: CheckResult) -> dict[str, Any]:
+def _checked(each: CheckedSettings, objective: Objective) -> dict[str, Any]:
+    differences = {"passed_share_difference": each.passed, "effort_difference": each.effort}
     return {
         "trial": each.label,
         "values": dict(each.values),
-        **_counts(each.robots, check.objective),
-        "passed_share_difference": _interval(each.passed),
-        "effort_difference": _interval(each.effort),
+        **_counts(each.robots, objective),
+        **{name: {end: round(x, _DIGITS) for end, x in rate._asdict().items()} for name, rate in differences.items()},
         "is_better": each.is_better,
     }
 
 
-def _counts(robots: tuple[ExaminedOutcome, ...], objective: Objective) -> dict[str, Any]:
-    return {
-        "passed": sum(each.passed for each in robots),
-        "exams": exams_of(robots),
-        "effort": [effort(each, objective) for each in robots],
-    }
-
-
-def _interval(difference: Rate) -> dict[str, float]:
-    return {name: round(value, _DIGITS) for name, value in difference._asdict().items()}
+def _counts(robots: Sequence[ExaminedOutcome], objective: Objective) -> dict[str, Any]:
+    passed, efforts = sum(each.passed for each in robots), [effort(each, objective) for each in robots]
+    return {"passed": passed, "exams": exams_of(robots), "effort": efforts}
 
 
 def tell(plan: SearchPlan, found: SearchTrials, check: CheckResult, command: str) -> Told:

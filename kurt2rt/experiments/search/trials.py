@@ -16,7 +16,7 @@ from pydantic import ValidationError
 
 from config.settings import Settings
 from kurt2rt.experiments.search.plan import SHIPPED, SearchPlan, effort, highest_score, label_of, score_of
-from kurt2rt.experiments.search.settings import Dimension, Objective, Values, rounded
+from kurt2rt.experiments.search.settings import Objective, Values, rounded
 from kurt2rt.experiments.study.intervals import Rate, difference_of
 from kurt2rt.experiments.study.jobs import ExaminedOutcome, StudyError
 from kurt2rt.experiments.study.pool import Executor, PoolProgress, missing_time_s, run_missing
@@ -34,29 +34,32 @@ class SearchTrials:
     def __init__(self, plan: SearchPlan) -> None:
         optuna.logging.set_verbosity(optuna.logging.WARNING)
         self._dimensions = {each.key: each for each in plan.search.space}
+        self._distributions: dict[str, BaseDistribution] = {
+            each.key: FloatDistribution(each.low, each.high, log=each.log) for each in plan.search.space
+        }
         self._seed = plan.search.sampler_seed
         self._shipped = plan.space.shipped
-        self._study: Study = optuna.create_study(direction="maximize")
+        self.study: Study = optuna.create_study(direction="maximize")
 
     @property
     def all(self) -> list[FrozenTrial]:
         """All trials of the search, in the order of their numbers."""
-        return self._study.get_trials(deepcopy=False)
-
-    def values(self, number: int) -> Values:
-        """Return the values of a trial by key."""
-        return self.all[number].params
+        return self.study.get_trials(deepcopy=False)
 
     def begin(self, number: int) -> None:
-        """Begin the trial of the next number; the first one has the shipped values."""
-        values = self._choose(number) if number else self._shipped
-        chosen = {key: rounded(each, values[key]) if number else values[key] for key, each in self._dimensions.items()}
-        distributions = {key: _distribution(each) for key, each in self._dimensions.items()}
-        self._study.add_trial(create_trial(state=TrialState.RUNNING, params=chosen, distributions=distributions))
+        """Begin the trial of the next number: with the shipped values, later with those that a model chooses.
 
-    def report(self, number: int, step: int, score: float) -> None:
-        """Note the score of a trial's first `step + 1` robots; `score` is dimensionless."""
-        Trial(self._study, self.all[number]._trial_id).report(score, step)
+        The model learns from all trials so far; each trial has a random stream of its own.
+        """
+        chosen = dict(self._shipped)
+        if number:
+            sampler = optuna.samplers.TPESampler(seed=self._seed * 100_000 + number, n_startup_trials=_STARTUP_TRIALS)
+            study: Study = optuna.create_study(sampler=sampler, direction="maximize")
+            study.add_trials(self.all)
+            values = study.ask(self._distributions).params
+            chosen = {key: rounded(each, values[key]) for key, each in self._dimensions.items()}
+        running = create_trial(state=TrialState.RUNNING, params=chosen, distributions=self._distributions)
+        self.study.add_trial(running)
 
     def median_score(self, first: int) -> float:
         """Return the median score of the finished trials before number `first`; -inf if they are too few to prune by.
@@ -66,29 +69,10 @@ class SearchTrials:
         scores = [trial.value for trial in finished(self.all[:first]) if trial.value is not None]
         return median(scores) if len(scores) >= _PRUNES_AFTER_TRIALS else -math.inf
 
-    def prune(self, number: int) -> None:
-        """End a trial without a score."""
-        self._study.tell(number, state=TrialState.PRUNED)
-
-    def finish(self, number: int, score: float) -> None:
-        """End a trial with the score of all its robots, dimensionless."""
-        self._study.tell(number, score)
-
-    def _choose(self, number: int) -> Values:
-        """Return the values that a model of all trials so far chooses, by a random stream of the trial's own."""
-        sampler = optuna.samplers.TPESampler(seed=self._seed * 100_000 + number, n_startup_trials=_STARTUP_TRIALS)
-        study: Study = optuna.create_study(sampler=sampler, direction="maximize")
-        study.add_trials(self.all)
-        return study.ask({key: _distribution(each) for key, each in self._dimensions.items()}).params
-
 
 def finished(trials: Sequence[FrozenTrial]) -> list[FrozenTrial]:
     """Return the trials that have a score."""
     return [trial for trial in trials if trial.state is TrialState.COMPLETE]
-
-
-def _distribution(dimension: Dimension) -> BaseDistribution:
-    return FloatDistribution(dimension.low, dimension.high, log=dimension.log)
 
 
 def trials_time_s(plan: SearchPlan, trials: int) -> float:
@@ -126,7 +110,7 @@ def _run_together(
 ) -> None:
     """Run some trials, robot by robot, and prune those that cannot beat the median of the trials before them."""
     to_beat = found.median_score(numbers[0])
-    jobs = {number: plan.trial_jobs(found.values(number), number) for number in numbers}
+    jobs = {number: plan.trial_jobs(found.all[number].params, number) for number in numbers}
     robots, before_s = plan.search.search.seeds.count, 0.0
     exams = robots * len(plan.search.search.worlds)
 
@@ -143,14 +127,15 @@ def _run_together(
         run_missing([(*wave, *plan.witnesses_of_trials(wave))], plan.parts["results"], executor, update)
         before_s += wave_s
         for number in numbers:
-            found.report(number, step, score_of(robots_of(number, step + 1), plan.search.objective))
+            score = score_of(robots_of(number, step + 1), plan.search.objective)
+            Trial(found.study, found.all[number]._trial_id).report(score, step)
         if step < robots - 1:
             hopeless = [number for number in numbers if highest_score(robots_of(number, step + 1), exams) <= to_beat]
             for number in hopeless:
-                found.prune(number)
+                found.study.tell(number, state=TrialState.PRUNED)
             numbers = [number for number in numbers if number not in hopeless]
     for number in numbers:
-        found.finish(number, score_of(robots_of(number, robots), plan.search.objective))
+        found.study.tell(number, score_of(robots_of(number, robots), plan.search.objective))
 
 
 _FILE = "check.json"
@@ -256,7 +241,7 @@ def run_check(
     for results of other settings, and any error of a job.
     """
     results, record = plan.parts["results"], _begin_check(plan, found, trials)
-    sets = {SHIPPED: plan.space.shipped, **{label_of(each): found.values(each) for each in record.candidates}}
+    sets = {SHIPPED: plan.space.shipped, **{label_of(each): found.all[each].params for each in record.candidates}}
     jobs = {label: plan.check_jobs(values, label) for label, values in sets.items()}
     checked_jobs = tuple(job for of_label in jobs.values() for job in of_label)
     whole_s = sum(job.robot_time_s for job in checked_jobs)

@@ -66,11 +66,11 @@ def test_check_is_made_once(tmp_path: Path) -> None:
         trials = SearchTrials(plan)
         for number, score in enumerate((0.9, 0.5, 0.7)):
             trials.begin(number)
-            trials.finish(number, score)
+            trials.study.tell(number, score)
         record = _begin_check(plan, trials, 3)
         assert (record.trials, record.candidates) == (3, (2,))
         trials.begin(3)
-        trials.finish(3, 1.0)
+        trials.study.tell(3, 1.0)
         assert _begin_check(plan, trials, 3) == record
     assert require_unchecked(plan, 3) == record
     with pytest.raises(StudyError, match=r"checked after 3 trials \(got --trials 4, allowed 3\)"):

@@ -114,7 +114,7 @@ def test_median_is_of_four_earlier_trials_at_least(tmp_path: Path) -> None:
     found = SearchTrials(tiny_plan(tmp_path))
     for number, score in enumerate((0.1, 0.4, 0.2, 0.3, 0.9)):
         found.begin(number)
-        found.finish(number, score)
+        found.study.tell(number, score)
     assert found.median_score(3) == float("-inf")
     assert found.median_score(4) == pytest.approx(0.25)
     assert found.median_score(5) == pytest.approx(0.3)
