@@ -187,7 +187,7 @@ class _Transfer(_TaskOptions):
         list[str] | None,
         _no_default(
             "New world, as in other commands; SEED in the name stands for the robot's seed. Repeat for several: "
-            "each robot is taught in each of them separately. Default: rooms-SEED, for streets streets-SEED.",
+            "each robot is taught in each of them separately. Default: rooms-SEED, for streets streets-SEED."
         ),
     ] = None
     checkpoint: Annotated[

@@ -385,12 +385,7 @@ def draw_worst(jobs: Iterable[BlockJob], commands: Sequence[str]) -> Iterator[Sa
         yield SavedFigure(path, f"Run {drive.seed}: {', '.join(filter(None, parts))}", command)
 
 
-def tell(
-    plan: StudyPlan[Certified],
-    again: Sequence[BlockJob],
-    words: Sequence[str],
-    command: str,
-) -> Told:
+def tell(plan: StudyPlan[Certified], again: Sequence[BlockJob], words: Sequence[str], command: str) -> Told:
     """Write pictures and report into the folder of the results; return the tables.
 
     `again`: jobs that drove the worst runs again for their pictures. `words`: options by which `kurt2rt

@@ -234,13 +234,7 @@ class TourRun(Episode):
     """Episode in which a scripted guide teaches the mid level, and a scripted teacher the basic one."""
 
     def __init__(
-        self,
-        simulation: Simulation,
-        runtime: Runtime,
-        *,
-        seed: int,
-        session: str,
-        on_progress: Callable[[float], None],
+        self, simulation: Simulation, runtime: Runtime, *, seed: int, session: str, on_progress: Callable[[float], None]
     ) -> None:
         task, settings = runtime.task, runtime.robot
         teaching = task.teaching

@@ -128,11 +128,7 @@ def _shown_at(street: Street) -> Place:
 
 
 def make_plan(
-    task: TaskSettings,
-    seeds: Sequence[int],
-    parts: JobParts,
-    *,
-    basic_folder: Path | None = None,
+    task: TaskSettings, seeds: Sequence[int], parts: JobParts, *, basic_folder: Path | None = None
 ) -> StudyPlan[TaskSettings]:
     """Check task and worlds, and return the jobs, a robot for each seed.
 

@@ -10,26 +10,10 @@ from kurt2rt.core.phase_settings import AskedShare
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, label_of
 from kurt2rt.experiments.phases.steps import Judgement, Step, phases_of
 from kurt2rt.experiments.phases.study import JobOutcome, PhasesTask, StageOutcome, TeachingOutcome
-from kurt2rt.experiments.study.exam_tables import (
-    Drives,
-    by_world,
-)
-from kurt2rt.experiments.study.intervals import (
-    TEN_MIN_S,
-    Rate,
-    collisions_in_10_min,
-    difference_of,
-    fall_of,
-    rate_of,
-)
+from kurt2rt.experiments.study.exam_tables import Drives, by_world
+from kurt2rt.experiments.study.intervals import TEN_MIN_S, Rate, collisions_in_10_min, difference_of, fall_of, rate_of
 from kurt2rt.experiments.study.study_plan import Group, StudyPlan, group_by
-from kurt2rt.experiments.study.table import (
-    Verdict,
-    needed_of,
-    of_text,
-    reasons_against_judging,
-    to_text,
-)
+from kurt2rt.experiments.study.table import Verdict, needed_of, of_text, reasons_against_judging, to_text
 
 HOUR_S = 3600.0
 Stage = Group[Step, StageOutcome]

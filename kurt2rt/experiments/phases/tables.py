@@ -34,12 +34,7 @@ from kurt2rt.experiments.study.exam_tables import (
     collision_columns,
     measure_column,
 )
-from kurt2rt.experiments.study.intervals import (
-    TEN_MIN_S,
-    Rate,
-    quartiles,
-    rate_of,
-)
+from kurt2rt.experiments.study.intervals import TEN_MIN_S, Rate, quartiles, rate_of
 from kurt2rt.experiments.study.report import Section, spans, write_report
 from kurt2rt.experiments.study.study_plan import Group, StudyPlan
 from kurt2rt.experiments.study.table import (

@@ -10,13 +10,7 @@ from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.batch_mind import require_known_exams, require_known_lesson
 from kurt2rt.experiments.lockstep.engine import Engine, Engines, choose_witnesses
 from kurt2rt.experiments.search.settings import CheckSettings, Objective, Robots, SearchSettings, TaskSpace, Values
-from kurt2rt.experiments.study.jobs import (
-    CurriculumJob,
-    ExaminedOutcome,
-    JobParts,
-    curriculum_time_s,
-    require_places,
-)
+from kurt2rt.experiments.study.jobs import CurriculumJob, ExaminedOutcome, JobParts, curriculum_time_s, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
 from kurt2rt.experiments.study.study_plan import BusWitnessJob
 

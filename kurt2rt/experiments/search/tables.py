@@ -10,14 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from optuna.trial import FrozenTrial
 
-from kurt2rt.experiments.search.plan import (
-    PRESSES_OF_A_COLLISION,
-    SHIPPED,
-    SearchPlan,
-    effort,
-    exams_of,
-    label_of,
-)
+from kurt2rt.experiments.search.plan import PRESSES_OF_A_COLLISION, SHIPPED, SearchPlan, effort, exams_of, label_of
 from kurt2rt.experiments.search.settings import Objective, Robots
 from kurt2rt.experiments.search.trials import CheckedSettings, CheckResult, SearchTrials, best_trials, finished
 from kurt2rt.experiments.study.figures import SavedFigure, save

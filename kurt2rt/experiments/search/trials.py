@@ -229,11 +229,7 @@ def check_time_s(plan: SearchPlan) -> float:
 
 
 def run_check(
-    plan: SearchPlan,
-    found: SearchTrials,
-    trials: int,
-    executor: Executor,
-    on_progress: Callable[[PoolProgress], None],
+    plan: SearchPlan, found: SearchTrials, trials: int, executor: Executor, on_progress: Callable[[PoolProgress], None]
 ) -> CheckResult:
     """Write down the best of `trials` trials, teach and examine all robots of the check, and compare.
 

@@ -47,11 +47,7 @@ class Told:
 
 
 def table_of(
-    title: str,
-    rows: Iterable[RowT],
-    *columns: tuple[str, Callable[[RowT], object]],
-    words: int = 1,
-    note: str = "",
+    title: str, rows: Iterable[RowT], *columns: tuple[str, Callable[[RowT], object]], words: int = 1, note: str = ""
 ) -> Table:
     """Return a table with a row for each of `rows`; the fields of `Table` have their other parts."""
     cells = tuple(tuple(str(of(row)) for _, of in columns) for row in rows)
@@ -100,10 +96,7 @@ def share(heading: str, path: str) -> Column:
 
 def rate_columns(heading: str, rate: Callable[[Any], Rate], form: str = ".2f") -> tuple[Column, Column]:
     """Return the columns of a rate and of its 95 % interval."""
-    return (
-        (heading, lambda row: f"{rate(row).value:{form}}"),
-        ("95 %", lambda row: to_text(rate(row)[1:], form)),
-    )
+    return ((heading, lambda row: f"{rate(row).value:{form}}"), ("95 %", lambda row: to_text(rate(row)[1:], form)))
 
 
 def median(values: Iterable[float]) -> float:

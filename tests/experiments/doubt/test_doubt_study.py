@@ -36,11 +36,7 @@ TICKS = 3000
 
 
 def log(
-    doubt: Scores,
-    *,
-    missed: tuple[slice, ...] = (),
-    collisions: tuple[int, ...] = (),
-    seen: tuple[bool, ...] = (),
+    doubt: Scores, *, missed: tuple[slice, ...] = (), collisions: tuple[int, ...] = (), seen: tuple[bool, ...] = ()
 ) -> DriveLog:
     """Return a drive of 30 s with this doubt, half as great a distance, and wrong actions at `missed`."""
     flags = np.zeros(TICKS, dtype=np.bool_)

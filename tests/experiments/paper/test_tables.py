@@ -144,10 +144,7 @@ def test_targets_table_marks_missed_targets() -> None:
     assert capture.get().count("MISSED") == 2
 
 
-@pytest.mark.parametrize(
-    ("right", "collisions", "verdicts"),
-    [(95, 0, ("met", "met")), (94, 1, ("MISSED", "MISSED"))],
-)
+@pytest.mark.parametrize(("right", "collisions", "verdicts"), [(95, 0, ("met", "met")), (94, 1, ("MISSED", "MISSED"))])
 def test_streets_are_judged_by_junctions_and_collisions(right: int, collisions: int, verdicts: tuple[str, str]) -> None:
     found = {"junctions": 100.0, "junctions right": float(right)}
     robots = [robot(1, 130, drive("manhattan", collisions=collisions, duration_s=600.0, findings=found))]

@@ -2,11 +2,7 @@ import re
 
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.lesson import LessonCounts
-from kurt2rt.experiments.study.exam_tables import (
-    exam_tables,
-    lesson_table,
-    seeds_tables,
-)
+from kurt2rt.experiments.study.exam_tables import exam_tables, lesson_table, seeds_tables
 from kurt2rt.experiments.study.jobs import ExaminedOutcome
 from tests.experiments.helpers import short_task
 from tests.experiments.rows import MADE_OF, judged, lesson

@@ -4,13 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.experiments.study.intervals import (
-    fall_of,
-    poisson_interval,
-    quartiles,
-    rate_of,
-    wilson_interval,
-)
+from kurt2rt.experiments.study.intervals import fall_of, poisson_interval, quartiles, rate_of, wilson_interval
 
 
 def test_rate_of_clustered_events_has_a_wider_interval() -> None:

@@ -69,11 +69,7 @@ def test_missing_raises_for_an_incomplete_result(tmp_path: Path) -> None:
 
 
 def test_two_runs_do_not_write_into_one_folder(tmp_path: Path) -> None:
-    with (
-        Results(tmp_path).held(),
-        pytest.raises(StudyError, match=re.escape(f"{tmp_path}")),
-        Results(tmp_path).held(),
-    ):
+    with Results(tmp_path).held(), pytest.raises(StudyError, match=re.escape(f"{tmp_path}")), Results(tmp_path).held():
         pass
     with Results(tmp_path).held():
         pass

@@ -12,15 +12,7 @@ from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.experiments.study.examination import events_before_press
 from kurt2rt.experiments.study.jobs import Results
 from kurt2rt.experiments.study.study_plan import StudyPlan
-from kurt2rt.experiments.transfer import (
-    HomeJob,
-    Transfer,
-    TransferJob,
-    TransferOutcome,
-    make_plan,
-    read_study,
-    tell,
-)
+from kurt2rt.experiments.transfer import HomeJob, Transfer, TransferJob, TransferOutcome, make_plan, read_study, tell
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.helpers import short_task
 from tests.experiments.study.here import carry_out, parts_in

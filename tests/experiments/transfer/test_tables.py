@@ -54,12 +54,7 @@ def robots(*there: tuple[str, ...], home: str = "right") -> TransferStudy:
     plan = make_plan(NEW, [each.seed for each in outcomes], parts_in())
     home_outcomes = tuple(
         HomeOutcome(
-            made_of=MADE_OF,
-            seed=each.seed,
-            lesson=lesson(each.seed, presses=40),
-            lessons=120,
-            home=row(),
-            policy=row(),
+            made_of=MADE_OF, seed=each.seed, lesson=lesson(each.seed, presses=40), lessons=120, home=row(), policy=row()
         )
         for each in outcomes
     )
