@@ -140,10 +140,7 @@ class HomeJob(StudyJob):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransferJob(StudyJob):
-    """Lesson in a new world, and exams there after some of its presses, and at home.
-
-    The task is that of home.
-    """
+    """Lesson in a new world, and exams there after some of its presses, and at home. The task is that of home."""
 
     outcome = TransferOutcome
     gives_exams: ClassVar[bool] = True

@@ -167,10 +167,7 @@ class GoalsRun(Episode):
         return tuple(self._done)
 
     def on_tick(self, record: TickRecord) -> None:
-        """Measure the drive and judge whether it is over.
-
-        Raises LessonLostError if the robot refused a command.
-        """
+        """Measure the drive and judge whether it is over. Raises LessonLostError if the robot refused a command."""
         require_carried_out(record, self.task)
         self.measure()
         if record.decision.plan is not None:

@@ -96,10 +96,7 @@ def draw_testing_ground(factory: SimulationFactory, world: str, path: Path) -> N
 
 
 def draw_worlds(factory: SimulationFactory, worlds: Sequence[str], path: Path) -> None:
-    """Draw all worlds from above, two in a row (Fig. 6 of the paper).
-
-    Writes a PNG to `path`. Raises OSError.
-    """
+    """Draw all worlds from above, two in a row (Fig. 6 of the paper). Writes a PNG to `path`. Raises OSError."""
     figure, panels = panels_of(len(worlds), 2, (5.0, 5.0))
     for axes, world in zip(panels, worlds, strict=True):
         factory.draw(axes, world)
