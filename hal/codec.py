@@ -206,3 +206,12 @@ def _byte_aligned_struct(signals: list[Signal], length: int) -> struct.Struct | 
         layout += "x" * ((first - at_bit) // 8) + (letter if signal.is_signed else letter.upper())
         at_bit = first + signal.length
     return struct.Struct(layout + "x" * (length - at_bit // 8))
+
+
+SIMULATED_HARDWARE_ID = 0x5349
+"""Hardware id of simulated controllers, "SI" in ASCII. The ids of real controllers are not published."""
+
+
+def hardware(hardware_id: int) -> str:
+    """Return the hardware id of an INFO frame as text, which names the simulated robot."""
+    return f"hardware {hardware_id}" + (" (the simulated robot)" if hardware_id == SIMULATED_HARDWARE_ID else "")

@@ -24,19 +24,17 @@ def doctor(
     as_json: AsJson = False,
     ticks: Annotated[
         int,
-        typer.Option(metavar="N", min=1, help="Ticks to time; each takes 20 ms, and more of them find rarer lateness."),
+        typer.Option(metavar="N", min=1, help="Ticks to time; each takes 10 ms, and more of them find rarer lateness."),
     ] = 100,
 ) -> None:
     """Check what this machine offers the robot, and what to do.
 
-    Measures how late the timer is compared with asyncio.sleep, and how long the
-    disk takes to save a lesson. Checks real-time priority, cores, CAN, SQLite and
-    the simulator's packages. Changes nothing, and needs neither a robot nor a
-    display.
+    Measures how late the timer is, and how long the disk takes to save a lesson.
+    Checks real-time priority, cores, CAN, SQLite and the simulator's packages.
+    Changes nothing, and needs neither a robot nor a display.
 
     Ends with code 1 only if kurt2rt run cannot work here: without the timer, or
-    a disk for knowledge. CAN is not needed: the simulated robot does
-    without.
+    a disk for knowledge. CAN is not needed: the simulated robot does without.
 
     For example:
 

@@ -6,9 +6,8 @@ from typing import Protocol
 import can
 
 from config.settings import SettingsError
-from hal.codec import Codec, MessageCodec
+from hal.codec import SIMULATED_HARDWARE_ID, Codec, MessageCodec
 from hal.frame import Frame
-from hal.identity import SIMULATED_HARDWARE_ID
 from hal.kurt2_settings import Kurt2InfraredSettings, Kurt2Settings
 from simbridge.robot.instruments import Instruments
 

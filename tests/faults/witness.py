@@ -3,10 +3,10 @@
 from typing import NamedTuple
 
 from hal.robot import STANDSTILL, Robot, SensorReadings
-from hal.robot_proxy import RobotProxy
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.teaching.commands import Resume
 from kurt2rt.core.tick_record import TickRecord
+from kurt2rt.experiments.lockstep.faulty_sensor import RobotProxy
 from kurt2rt.platform.ledger import TickTimer
 from tests.faults.envelope import Envelope, WheelCommand
 from tests.faults.rig import Rig

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import pytest
 
 from hal.bus import BusError, CanBus, open_bus
+from hal.codec import SIMULATED_HARDWARE_ID
 from hal.frame import Frame
-from hal.identity import SIMULATED_HARDWARE_ID
 from hal.kurt2 import Kurt2
 from hal.robot import WheelSpeeds
 from simbridge.realtime import StandaloneRobot

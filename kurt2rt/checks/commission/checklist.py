@@ -6,7 +6,7 @@ from pathlib import Path
 from anyio import to_thread
 
 from config.settings import SettingsError
-from hal.identity import hardware
+from hal.codec import hardware
 from kurt2rt.checks.commission.bumpers import BumpersStep
 from kurt2rt.checks.commission.fault import SkipCode, SkippedError
 from kurt2rt.checks.commission.identity import IdentityStep

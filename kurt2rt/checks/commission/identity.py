@@ -1,8 +1,7 @@
 """Step that checks the controller's identity and the periods of all frames."""
 
 from hal.bus import CONTROL_ID
-from hal.codec import load_codec
-from hal.identity import hardware
+from hal.codec import hardware, load_codec
 from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.listener import FrameStatistics
 from kurt2rt.checks.commission.progress import Findings

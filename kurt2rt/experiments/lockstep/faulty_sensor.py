@@ -5,8 +5,8 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from config.settings import SettingsError
-from hal.robot import HIGHEST_COUNTS, Robot, SensorReadings
-from hal.robot_proxy import RobotProxy
+from hal.guard_reason import GuardReason
+from hal.robot import HIGHEST_COUNTS, GuardResult, Robot, SensorReadings, WheelSpeeds
 from hal.robot_settings import InfraredSettings
 
 
@@ -55,6 +55,33 @@ def parse_break(text: str, infrared: InfraredSettings) -> SensorBreak:
                 do=f"give SENSOR=FAULT, such as s15=low; the {what}s are {', '.join(known)}",
             )
     return SensorBreak(infrared.names.index(name), FaultKind(kind))
+
+
+class RobotProxy:
+    """Robot that forwards all calls to another robot (hal.robot.Robot); a subclass overrides some."""
+
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+
+    def sense(self, now_s: float) -> SensorReadings:
+        """Return the readings of the robot at `now_s`, in s."""
+        return self._robot.sense(now_s)
+
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
+        """Forward a request to the robot and return its guard's result; speeds in m/s, times in s."""
+        return self._robot.drive(wanted, decided_at_s, now_s)
+
+    def emergency_stop(self, reason: GuardReason) -> None:
+        """Brake the robot now; it stays stopped until `release`."""
+        self._robot.emergency_stop(reason)
+
+    def release(self) -> None:
+        """End a latched stop of the robot, unless its cause lasts."""
+        self._robot.release()
+
+    def close(self) -> None:
+        """Stop the wheels of the robot and close its bus."""
+        self._robot.close()
 
 
 class FaultySensor(RobotProxy):

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from config.settings import SettingsError
-from hal.identity import SIMULATED_HARDWARE_ID
+from hal.codec import SIMULATED_HARDWARE_ID
 from hal.kurt2_settings import SpeedMode
 from kurt2rt.checks.commission.checklist import STEPS, WORDS, blocking_failures, open_steps, step_named
 from kurt2rt.checks.commission.fault import SkipCode

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from hal.identity import SIMULATED_HARDWARE_ID
+from hal.codec import SIMULATED_HARDWARE_ID
 from hal.kurt2_settings import SpeedMode, load_kurt2
 from kurt2rt.checks.commission.checklist import STEPS, step_named
 from kurt2rt.checks.commission.progress import Findings, Progress, StepOutcome, StepRecord, load_progress

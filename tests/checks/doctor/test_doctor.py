@@ -21,8 +21,8 @@ from kurt2rt.checks.doctor.checks import (
     check_real_time_priority,
     check_sqlite_log,
     check_sync,
+    check_timer,
 )
-from kurt2rt.checks.doctor.timer import check_timer
 from kurt2rt.platform.clock import Clock
 from tests.cli.helpers import CommandLine
 
