@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from hal.kurt2_settings import Kurt2Settings
 from hal.tap import Tap
 from simbridge.contracts.batch import Batch, DriveSettings, FollowedSimulation, Mind, Start
-from simbridge.contracts.batch_lesson import LessonDriveSettings, LessonRobot
+from simbridge.contracts.batch_lesson import LessonDriveSettings, TaughtSimulation
 from simbridge.contracts.simulation import LiveSimulation
 from simbridge.kurt2_simulation import Kurt2Simulation
 from simbridge.robot_simulation import StallTolerantKurt2, run_live
@@ -60,7 +60,7 @@ class Kurt2SimulationFactory(RobotWorlds):
         robots = [each.simulated_robot for each in simulations if isinstance(each, Kurt2Simulation)]
         return RobotBatch(self.settings, robots, minds, settings)
 
-    def open_lesson(self, world: str, seed: int, purpose: str, settings: LessonDriveSettings) -> LessonRobot:
+    def open_lesson(self, world: str, seed: int, purpose: str, settings: LessonDriveSettings) -> TaughtSimulation:
         """Open a simulation whose robot is taught in a batch (simbridge.contracts.batch_lesson.LessonFactory).
 
         Raises BatchRefusedError for what the batch does not know, SettingsError for an unknown world.

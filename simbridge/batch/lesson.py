@@ -82,6 +82,11 @@ class CompiledLesson(RobotBatch):
         self._saved_learner = [array.copy() for array in self._learner]
 
     @property
+    def trouble(self) -> str:
+        """Return why the lesson belongs on the loop over the CAN bus; empty if it does not."""
+        return self.reason_to_leave(0)
+
+    @property
     def waits(self) -> bool:
         """Return whether the next tick has begun, and waits for the physics engine."""
         return bool(self._robots[0]["waits"])
@@ -198,6 +203,10 @@ class CompiledLesson(RobotBatch):
         self.put(0, pose)
         self._simulated.carry(pose)
         self._keep_state()
+
+    def lesson_hash(self) -> str:
+        """Return the state hash of the robot, as on the CAN bus."""
+        return self.state_hash(0, self._simulated.laps)
 
     def _decide(self, r: int) -> int:
         """Return the index of the action that Python chooses in the present tick, or STANDS."""

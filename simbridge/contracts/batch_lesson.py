@@ -104,12 +104,12 @@ class LessonDriveSettings:
     choose: Choose | None = None
     """Choice of the action in each tick, instead of the RLAs, for the situation by `features`; None: RLAs decide.
 
-    An error that it raises ends `LessonRobot.drive`, which raises it.
+    An error that it raises ends `LessonRobot.run`, which raises it.
     """
 
 
-class LessonRobot(Simulation, Protocol):
-    """Simulation whose robot drives in compiled stretches."""
+class LessonRobot(Protocol):
+    """Robot that is taught, and drives in compiled stretches."""
 
     @property
     def actions(self) -> tuple[str, ...]:
@@ -122,18 +122,18 @@ class LessonRobot(Simulation, Protocol):
         ...
 
     @property
-    def reason_to_leave(self) -> str:
+    def trouble(self) -> str:
         """Return why the lesson belongs on the loop over the CAN bus; empty if it does not."""
         ...
 
-    def watch(self, borders: Borders) -> None:
-        """Let `drive` end at borders; before the first tick.
+    def watch_borders(self, borders: Borders) -> None:
+        """Let `run` end at borders; before the first tick.
 
         Raises simbridge.contracts.batch.BatchRefusedError for too many areas.
         """
         ...
 
-    def select(self, behaviour: str) -> None:
+    def select_behaviour(self, behaviour: str) -> None:
         """Make a taught behaviour active from the next decision on."""
         ...
 
@@ -151,10 +151,10 @@ class LessonRobot(Simulation, Protocol):
         ...
 
     def sense(self) -> None:
-        """Begin the next tick up to its situation, whose row of the log is written; decide in the next `drive`."""
+        """Begin the next tick up to its situation, whose row of the log is written; decide in the next `run`."""
         ...
 
-    def drive(self, until: int) -> int:
+    def run(self, until: int) -> int:
         """Drive to the end of a tick and return its number; less at a border, and before the physics engine's ticks.
 
         Ticks after the last `keep` can be taken back. Raises ValueError for too many ticks.
@@ -181,8 +181,17 @@ class LessonRobot(Simulation, Protocol):
         """Forget contradictions of sensors with their neighbours, as a resume does."""
         ...
 
-    def state_hash(self) -> str:
+    def lesson_hash(self) -> str:
         """Return the state hash of the robot, as the simulated robot on the CAN bus has it after these ticks."""
+        ...
+
+
+class TaughtSimulation(Simulation, Protocol):
+    """Simulation whose robot drives by its `lesson` alone, and follows it."""
+
+    @property
+    def lesson(self) -> LessonRobot:
+        """Robot that is taught."""
         ...
 
 
@@ -190,7 +199,7 @@ class LessonRobot(Simulation, Protocol):
 class LessonFactory(SimulationFactory, Protocol):
     """Opens simulations whose robots are taught in a batch."""
 
-    def open_lesson(self, world: str, seed: int, purpose: str, settings: LessonDriveSettings) -> LessonRobot:
+    def open_lesson(self, world: str, seed: int, purpose: str, settings: LessonDriveSettings) -> TaughtSimulation:
         """Open a simulation (simbridge.contracts.simulation.SimulationFactory) with a compiled robot.
 
         Raises simbridge.contracts.batch.BatchRefusedError for what the batch does not know.

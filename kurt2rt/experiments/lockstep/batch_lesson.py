@@ -28,7 +28,7 @@ from kurt2rt.experiments.lockstep.lesson_mind import LessonMind
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
-from simbridge.contracts.batch_lesson import LessonCause, LessonFactory, LessonRobot
+from simbridge.contracts.batch_lesson import LessonCause, LessonFactory, TaughtSimulation
 from simbridge.contracts.simulation import Pose, Position
 
 _UNKNOWN, _TEACHER = int(LessonCause.UNKNOWN), int(LessonCause.TEACHER)
@@ -83,13 +83,14 @@ def open_batch_lesson(
     plan, store = plan_of(task), InMemoryEventStore()
     choose = None if learners is None else choice_of(learners, task, taught=lambda: runtime.handler.is_taught)
     lesson = build_lesson_settings(settings, task, choose)
-    with closing(factory.open_lesson(task.teaching.world, seed, plan.purpose, lesson)) as robot:
+    with closing(factory.open_lesson(task.teaching.world, seed, plan.purpose, lesson)) as simulation:
+        robot = simulation.lesson
         recent = LoggedDecisions(robot.log, lesson.features.average_steps, robot.actions, task.behaviours)
         training = TrainingStore(store, learners=learners)
-        runtime = build_training_runtime(robot, settings, task, training, recent)
+        runtime = build_training_runtime(simulation, settings, task, training, recent)
         mind = LessonMind(runtime, robot, recent, store, learners)
         session = f"{plan.purpose}-{seed}-after-0"
-        yield BatchTrainingRun(robot, mind, plan, seed=seed, session=session, on_progress=on_progress)
+        yield BatchTrainingRun(simulation, mind, plan, seed=seed, session=session, on_progress=on_progress)
 
 
 class BatchTrainingRun(TrainingRun):
@@ -97,7 +98,7 @@ class BatchTrainingRun(TrainingRun):
 
     def __init__(
         self,
-        robot: LessonRobot,
+        simulation: TaughtSimulation,
         mind: LessonMind,
         plan: LessonPlan,
         *,
@@ -105,11 +106,11 @@ class BatchTrainingRun(TrainingRun):
         session: str,
         on_progress: Callable[[float], None],
     ) -> None:
-        super().__init__(robot, mind.runtime, plan, seed=seed, session=session, on_progress=on_progress)
-        self.robot, self._mind = robot, mind
-        self._actions = robot.actions
+        super().__init__(simulation, mind.runtime, plan, seed=seed, session=session, on_progress=on_progress)
+        self.robot, self._mind = simulation.lesson, mind
+        self._actions = self.robot.actions
         if isinstance(self.metric, BorderMetric):
-            robot.watch(self.metric.borders)
+            self.robot.watch_borders(self.metric.borders)
         # Asked once, because it reads all members of the protocol.
         self._stretch_metric = self.metric if isinstance(self.metric, StretchMetric) else None
         self._messages: list[tuple[int, HoldAction]] = []
@@ -139,7 +140,7 @@ class BatchTrainingRun(TrainingRun):
         due = self._mind.is_due(begin + 1)
         if due or robot.waits:
             robot.sense()
-            if robot.reason_to_leave:
+            if robot.trouble:
                 return False
         if due:
             results = self._mind.take(begin + 1)
@@ -164,19 +165,19 @@ class BatchTrainingRun(TrainingRun):
         """
         robot, seen = self.robot, begin
         while True:
-            reached = robot.drive(self._stretch_end(seen))
+            reached = robot.run(self._stretch_end(seen))
             if reached > seen:
                 stuck = self._stuck_tick(begin, reached)
                 seen = self._ask_teacher(seen, reached if stuck is None else stuck)
                 if seen < reached or seen == stuck or self._repositions_at(seen):
                     robot.restore_tick(seen)
                     return seen
-            if robot.reason_to_leave:
+            if robot.trouble:
                 return None
             if seen > begin and not self._goes_on_in_engine(begin, seen):
                 return seen
             robot.sense()
-            if robot.reason_to_leave:
+            if robot.trouble:
                 return None
 
     def _goes_on_in_engine(self, begin: int, tick: int) -> bool:

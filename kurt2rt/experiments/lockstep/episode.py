@@ -45,9 +45,7 @@ class StuckDetector:
 
     def none_since_window(self, pose: Pose) -> bool:
         """Return whether the robot stayed within `least_m` for a whole window; call it in every tick."""
-        due = self._ticks % self._stride == 0
-        self._ticks += 1
-        return due and self._looks_stuck(Position(pose.x_m, pose.y_m))
+        return self.ticks_until_stuck(1, lambda _: Position(pose.x_m, pose.y_m)) is not None
 
     def ticks_until_stuck(self, ticks: int, position_at: Callable[[int], Position]) -> int | None:
         """Return the number of ticks in a row after which the robot is stuck; None if it is not.

@@ -103,7 +103,7 @@ class LessonMind:
         behaviour = self.runtime.active_behaviour.behaviour
         if behaviour != self._behaviour:
             self._behaviour = behaviour
-            self._robot.select(behaviour)
+            self._robot.select_behaviour(behaviour)
             self._renew_knowledge()
         elif self._events or self._label_count != labels:
             self._renew_knowledge()

@@ -50,6 +50,17 @@ Hands = Literal["set_down", "shown", "rescued", "go"]
 SAID = ("lessons", "corrections", "rewards", "appraisals")
 """Commands; the other fields are manual acts."""
 
+_COUNTED: dict[type[Command], str] = {
+    Teach: "lessons",
+    Correct: "corrections",
+    ReplaceAction: "corrections",
+    DeleteRla: "corrections",
+    Reward: "rewards",
+    Appraise: "appraisals",
+    Stop: "stops",
+    Undo: "undone",
+}
+
 
 class TeacherWorkload:
     """Counter of commands and manual acts, minute by minute."""
@@ -69,36 +80,19 @@ class TeacherWorkload:
 
     def count(self, tick: int, command: Command) -> None:
         """Count a command; commands that do not teach are left out."""
-        place = self._place(tick)
-        now = self._minutes[place]
-        match command:
-            case Teach():
-                now = now._replace(lessons=now.lessons + 1)
-            case Correct() | ReplaceAction() | DeleteRla():
-                now = now._replace(corrections=now.corrections + 1)
-            case HoldAction(press_id=press_id) if press_id != self._held_press:
-                self._held_press = press_id
-                now = now._replace(corrections=now.corrections + 1)
-            case Reward():
-                now = now._replace(rewards=now.rewards + 1)
-            case Stop(press_id=None):
-                now = now._replace(stops=now.stops + 1)
-            case Undo():
-                now = now._replace(undone=now.undone + 1)
-            case Appraise():
-                now = now._replace(appraisals=now.appraisals + 1)
-        self._set(place, now, tick)
+        if isinstance(command, HoldAction):
+            if command.press_id != self._held_press:
+                self._held_press = command.press_id
+                self._add(tick, "corrections")
+        elif type(command) in _COUNTED and not (isinstance(command, Stop) and command.press_id is not None):
+            self._add(tick, _COUNTED[type(command)])
 
     def count_manual(self, tick: int, what: Hands) -> None:
         """Count a manual act of a kind, such as a rescue, in the minute of `tick`."""
-        place = self._place(tick)
-        now = self._minutes[place]
-        self._set(place, now._replace(**{what: getattr(now, what) + 1}), tick)
+        self._add(tick, what)
 
-    def _set(self, place: int, minute: WorkloadMinute, tick: int) -> None:
+    def _add(self, tick: int, what: str) -> None:
+        place = min((tick - 1) // self._ticks_per_minute, len(self._minutes) - 1)
         before = self._minutes[place]
+        minute = self._minutes[place] = before._replace(**{what: getattr(before, what) + 1})
         self.press_ticks.extend([tick] * (minute.presses - before.presses))
-        self._minutes[place] = minute
-
-    def _place(self, tick: int) -> int:
-        return min((tick - 1) // self._ticks_per_minute, len(self._minutes) - 1)

@@ -105,9 +105,9 @@ def lesson_in_both(task: TaskSettings, seed: int) -> GivenLesson | None:
     """
     with batch_lesson(task, seed) as run:
         if not run.drive_stretches():
-            assert run.robot.reason_to_leave
+            assert run.robot.trouble
             return None
-        in_batch, state_hash = run.given(), run.robot.state_hash()
+        in_batch, state_hash = run.given(), run.robot.lesson_hash()
     on_bus, state_hash_on_bus = lesson_on_bus(task, seed)
     require_equal_lessons(in_batch, on_bus)
     assert state_hash == state_hash_on_bus
