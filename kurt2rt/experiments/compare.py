@@ -176,7 +176,7 @@ class PupilJob(StudyJob):
                     break
             return tuple(drives)
 
-        after = (*self.after, given.result.presses)
+        after = (*self.after, given.result.counts.presses)
         return PupilOutcome(
             made_of=self.made_of,
             seed=self.seed,

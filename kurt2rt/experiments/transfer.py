@@ -175,7 +175,7 @@ class TransferJob(StudyJob):
         return TransferOutcome(
             made_of=self.made_of,
             seed=self.seed,
-            lesson=lesson.counts.model_copy(update={"presses": min(lesson.presses, max(after))}),
+            lesson=lesson.counts.model_copy(update={"presses": min(lesson.counts.presses, max(after))}),
             checkpoints=tuple(checkpoints),
             policy=policy,
             home_when_right=homes[when_right],

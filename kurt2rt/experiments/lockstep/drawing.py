@@ -26,9 +26,11 @@ def draw_curriculum(
     columns = (panels + 1) // 2
     figure = Figure(figsize=(5.2 * columns, 10.0), layout="constrained")
     axes = figure.subplots(2, columns).flatten().tolist()
-    draw_drive(axes[0], factory, lesson.world, lesson.trail, lesson.ask_positions)
+    draw_drive(axes[0], factory, lesson.counts.world, lesson.trail, lesson.ask_positions)
     legend_below(axes[0])
-    axes[0].set_title(f"Lesson in world {label_of(lesson.world)}: {lesson.teaching_s:.0f} s, {len(lesson.rlas)} RLAs")
+    axes[0].set_title(
+        f"Lesson in world {label_of(lesson.counts.world)}: {lesson.counts.teaching_s:.0f} s, {len(lesson.rlas)} RLAs"
+    )
     _draw_growth(axes[1], lesson.growth, task)
     for panel, each in zip(axes[2:], exams, strict=False):
         _draw_exam(panel, each, factory)

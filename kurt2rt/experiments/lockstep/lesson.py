@@ -14,7 +14,6 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import MID, Phase, Rla
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.teacher_settings import SUPERHUMAN
 from kurt2rt.core.teaching.commands import Command, DeleteRla, Resume, Reward
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
@@ -43,62 +42,27 @@ class LessonCounts(Settings):
     """Name of the scripted teacher."""
     teaching_s: float
     rlas: int
-    knowledge_hash: str
-    asks: int
-    corrections: int
-    presses: int
-    rescues: int
-    repositions: int
-    deletions: int
-    alarms: int
-    collisions: int
-
-
-@dataclass(frozen=True, slots=True)
-class TrainingResult:
-    """Counters and knowledge of a training run: a simulated session with a teacher.
-
-    The seed decides all of it, bit for bit.
-    """
-
-    seed: int
-    world: str
-    teaching_s: float
-    rlas: tuple[Rla, ...]
     """RLAs of the basic level."""
     knowledge_hash: str
     asks: int
     corrections: int
     """Corrections of the basic level."""
+    presses: int
+    """Presses of the teacher (`WorkloadMinute.presses`)."""
     rescues: int
-    growth: tuple[int, ...]
-    """Number of RLAs after each second of teaching."""
-    trail: tuple[Position, ...]
-    ask_positions: tuple[Position, ...]
-    ledger: TickTimer = field(compare=False, repr=False)
-    """Durations of the last ticks on the machine of the run."""
-    alarms: int = 0
-    """Number of latched stops of the guard and stops for a broken sensor, each ended by the teacher."""
-    repositions: int = 0
+    repositions: int
     """Planned repositionings, without rescues."""
-    deletions: int = 0
+    deletions: int
     """RLAs that the teacher deleted."""
-    progress: float = 0.0
-    """Progress by the task's metric, in `unit`."""
-    unit: str = ""
-    findings: Metrics = field(default_factory=dict)
-    """Further measures of the metric."""
+    alarms: int
+    """Latched stops of the guard and stops for a broken sensor, each ended by the teacher."""
+    collisions: int
     workload: tuple[WorkloadMinute, ...] = ()
     """Commands and manual acts of the teacher, minute by minute."""
-    press_ticks: tuple[int, ...] = ()
-    """Tick in which each press was sent."""
-    labels: tuple[tuple[Label, ...], ...] = field(default=(), compare=False, repr=False)
-    """Standing labels of the learners before each press, and at the end; empty if RLAs decide."""
     positive_rewards: int = 0
     negative_rewards: int = 0
     refused_signals: int = 0
     """Rewards that came after their RLA was deleted, and late lessons of a person."""
-    collisions: int = 0
     unknown_rescues: int = 0
     """Rescues of a robot that stood in an unknown situation without an answer."""
     share_unknown: float = 0.0
@@ -107,30 +71,46 @@ class TrainingResult:
     """Agreement of critic and teacher after each 10 s, 0 to 1; None: too few signals."""
     share_trusted: float = 0.0
     """Ratio of ticks with a trusted critic, 0 to 1."""
-    saved: Statistics = field(default_factory=Statistics, compare=False, repr=False)
-    """Counters and values of the RLAs at the end."""
-    mid_rlas: tuple[Rla, ...] = ()
+    mid_rlas: int = 0
     """RLAs of the mid level."""
     mid_asks: int = 0
     """Questions of the mid level among `asks`."""
     mid_corrections: int = 0
     missed_junctions: int = 0
     """Junctions that the mid level did not notice."""
-    teacher: str = SUPERHUMAN
-    """Name of the scripted teacher."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingResult:
+    """Counts and knowledge of a training run: a simulated session with a teacher.
+
+    The seed decides all of it, bit for bit.
+    """
+
+    counts: LessonCounts
+    rlas: tuple[Rla, ...]
+    """RLAs of the basic level."""
+    growth: tuple[int, ...]
+    """Number of RLAs after each second of teaching."""
+    trail: tuple[Position, ...]
+    ask_positions: tuple[Position, ...]
+    ledger: TickTimer = field(compare=False, repr=False)
+    """Durations of the last ticks on the machine of the run."""
+    progress: float = 0.0
+    """Progress by the task's metric, in `unit`."""
+    unit: str = ""
+    findings: Metrics = field(default_factory=dict)
+    """Further measures of the metric."""
+    press_ticks: tuple[int, ...] = ()
+    """Tick in which each press was sent."""
+    labels: tuple[tuple[Label, ...], ...] = field(default=(), compare=False, repr=False)
+    """Standing labels of the learners before each press, and at the end; empty if RLAs decide."""
+    saved: Statistics = field(default_factory=Statistics, compare=False, repr=False)
+    """Counters and values of the RLAs at the end."""
+    mid_rlas: tuple[Rla, ...] = ()
+    """RLAs of the mid level."""
     autonomous_values: Statistics | None = field(default=None, compare=False, repr=False)
     """Values of the RLAs in phase 5; None if the run ended in another phase."""
-
-    @property
-    def presses(self) -> int:
-        """Number of the teacher's presses (`WorkloadMinute.presses`)."""
-        return sum(minute.presses for minute in self.workload)
-
-    @property
-    def counts(self) -> LessonCounts:
-        """Counts of the run, such as questions, corrections and collisions."""
-        counted = {name: getattr(self, name) for name in LessonCounts.model_fields if name != "rlas"}
-        return LessonCounts(rlas=len(self.rlas), **counted)
 
 
 class GivenLesson(NamedTuple):
@@ -260,42 +240,49 @@ class TrainingRun(Episode):
         """Return the counters and the knowledge."""
         runtime, system = self.runtime, self.runtime.level.system
         autonomous = self._teacher.phase is Phase.AUTONOMOUS
-        return TrainingResult(
-            teacher=self.task.teaching.profile.name,
+        minutes, ticks, mid_rlas = self._workload.minutes, max(self.ticks, 1), system.rlas_at(MID)
+        counts = LessonCounts(
             seed=self._seed,
             world=self.task.teaching.world,
+            teacher=self.task.teaching.profile.name,
             teaching_s=self.ticks * self.period_s,
-            rlas=system.rlas,
+            rlas=len(system.rlas),
             knowledge_hash=system.knowledge_hash(),
             asks=len(self.ask_positions),
             corrections=runtime.handler.corrections,
+            presses=sum(minute.presses for minute in minutes),
             rescues=self._rescues,
+            repositions=self.repositions,
+            deletions=self._deletions,
+            alarms=self._alarms,
+            collisions=self.simulation.collisions,
+            workload=minutes,
+            positive_rewards=self._positive_rewards,
+            negative_rewards=self._negative_rewards,
+            refused_signals=self._refused,
+            unknown_rescues=self._unknown_rescues,
+            share_unknown=self.unknown_ticks / ticks,
+            agreement=tuple(self._agreements),
+            share_trusted=self._trusted_ticks / ticks,
+            mid_rlas=len(mid_rlas),
+            mid_asks=self.mid_asks,
+            mid_corrections=runtime.handler.corrections_at(MID),
+            missed_junctions=0 if self._dispatcher is None else self._dispatcher.missed,
+        )
+        return TrainingResult(
+            counts=counts,
+            rlas=system.rlas,
             growth=tuple(self._growth),
             trail=tuple(self.trail),
             ask_positions=tuple(self.ask_positions),
             ledger=runtime.timer,
-            alarms=self._alarms,
-            repositions=self.repositions,
-            deletions=self._deletions,
             progress=self.metric.progress,
             unit=self.metric.unit,
             findings=self.metric.findings,
-            workload=self._workload.minutes,
             press_ticks=tuple(self._workload.press_ticks),
             labels=() if runtime.learner is None else (*self._labels, runtime.learner.team.labels),
-            positive_rewards=self._positive_rewards,
-            negative_rewards=self._negative_rewards,
-            refused_signals=self._refused,
-            collisions=self.simulation.collisions,
-            unknown_rescues=self._unknown_rescues,
-            share_unknown=self.unknown_ticks / max(self.ticks, 1),
-            agreement=tuple(self._agreements),
-            share_trusted=self._trusted_ticks / max(self.ticks, 1),
             saved=runtime.snapshot(),
-            mid_rlas=system.rlas_at(MID),
-            mid_asks=self.mid_asks,
-            mid_corrections=runtime.handler.corrections_at(MID),
-            missed_junctions=0 if self._dispatcher is None else self._dispatcher.missed,
+            mid_rlas=mid_rlas,
             autonomous_values=runtime.reinforcement.autonomous_values() if autonomous else None,
         )
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
 from pathlib import Path
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 from behaviors.metrics.task_metric import TaskMetric
 from behaviors.repertoire import primitive_speeds
@@ -26,10 +26,9 @@ from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.lockstep.exam import ExamSetup
-from kurt2rt.experiments.lockstep.lesson import TrainingResult
+from kurt2rt.experiments.lockstep.lesson import LessonCounts, TrainingResult
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
-from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
 from kurt2rt.experiments.phases.steps import (
     Judgement,
     PhaseStep,
@@ -50,24 +49,9 @@ from kurt2rt.knowledge.journal.loading import open_for_teaching, read_lessons
 from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
 
 
-class TeachingOutcome(Settings):
-    """Counters of the training run of one step."""
+class TeachingOutcome(LessonCounts):
+    """Counts of the training run of one step, and of its lessons."""
 
-    teaching_s: float
-    workload: tuple[WorkloadMinute, ...]
-    asks: int
-    positive_rewards: int
-    negative_rewards: int
-    refused_signals: int
-    collisions: int
-    rescues: int
-    unknown_rescues: int
-    """Rescues of a robot in an unknown situation without a teacher."""
-    alarms: int
-    share_unknown: float
-    agreement: tuple[float | None, ...]
-    """Agreement after each 10 s."""
-    share_trusted: float
     withdrawn: int
     """Actions that were withdrawn because their value fell."""
     critics_changes: int
@@ -119,13 +103,12 @@ def _teaching_outcome(lesson: TrainingResult, events: Sequence[TeachingEvent]) -
     """Return the stored counters of a training run; `events`: those of this run."""
     own = [event for event in events if event.origin.teacher == CRITIC]
     undone = sum(isinstance(event, LessonUndone) for event in own)
-    of_events: dict[str, Any] = {
-        "withdrawn": sum(isinstance(event, ActionWithdrawn) for event in events),
-        "critics_changes": len(own) - undone,
-        "rolled_back": undone,
-    }
-    counted = {name: getattr(lesson, name) for name in TeachingOutcome.model_fields if name not in of_events}
-    return TeachingOutcome(**counted, **of_events)
+    return TeachingOutcome(
+        **dict(lesson.counts),
+        withdrawn=sum(isinstance(event, ActionWithdrawn) for event in events),
+        critics_changes=len(own) - undone,
+        rolled_back=undone,
+    )
 
 
 def _stage_outcome(

@@ -26,11 +26,6 @@ class RouteOutcome(TaughtOutcome):
 
     route: tuple[Place, ...]
     """Its junctions, from the first decision on."""
-    mid_rlas: int
-    mid_asks: int
-    mid_corrections: int
-    missed_junctions: int
-    """Junctions that the mid level missed in training; the teacher commanded there."""
     drive: DriveRow
     """Exam; passed if every decision was right, without a collision, to the end."""
     wrong: tuple[RouteMistake, ...]
@@ -94,24 +89,14 @@ class RouteJob(StudyJob):
         watching.end()
         legs = metric.route_in(self.factory.plan_of(world), task.behaviours).legs
 
-        def of_all(name: str) -> int:
-            return sum(getattr(each, name) for each in lessons)
-
-        counts = {
-            "teaching_s": sum(each.teaching_s for each in lessons),
-            "asks": of_all("asks") - of_all("mid_asks"),
-            "corrections": of_all("corrections"),
-            "rescues": of_all("rescues"),
-        }
+        summed = ("teaching_s", "asks", "corrections", "rescues", "mid_asks", "mid_corrections", "missed_junctions")
+        counts = {name: sum(getattr(each.counts, name) for each in lessons) for name in summed}
+        counts["asks"] -= counts["mid_asks"]
         return RouteOutcome(
             made_of=self.made_of,
             seed=self.seed,
             lesson=lessons[-1].counts.model_copy(update=counts),
             route=tuple((leg.junction.x_m, leg.junction.y_m) for leg in legs),
-            mid_rlas=len(lessons[-1].mid_rlas),
-            mid_asks=of_all("mid_asks"),
-            mid_corrections=of_all("mid_corrections"),
-            missed_junctions=of_all("missed_junctions"),
             drive=exam.with_verdict(ExamVerdict.FAILED) if watching.wrong else exam.as_measure(),
             wrong=tuple(watching.wrong),
         )

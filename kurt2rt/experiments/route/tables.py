@@ -120,7 +120,7 @@ def _told(outcome: RouteOutcome) -> str:
     return (
         f"robot {outcome.seed}: {drive.right} of {drive.junctions} decisions right{collisions}\n"
         f"{drive.duration_s:.0f} s {'without an error' if drive.passed else 'with errors'}, "
-        f"{outcome.mid_rlas} mid-level RLAs"
+        f"{outcome.lesson.mid_rlas} mid-level RLAs"
     )
 
 
@@ -145,7 +145,7 @@ def verdicts(routes: Routes, paper: PaperResult) -> Iterator[Verdict]:
     share = WITHOUT_ERROR.get(decisions)
     if share is None:
         return
-    most = max(each.mid_rlas for each in outcomes)
+    most = max(each.lesson.mid_rlas for each in outcomes)
     yield Verdict("mid-level RLAs, most", f"at most {paper.rlas}", str(most), most <= paper.rlas)
     longest_s = max(each.lesson.teaching_s for each in outcomes)
     yield Verdict("teaching", f"at most {paper.teaching_s:g} s", f"{longest_s:g} s", longest_s <= paper.teaching_s)
@@ -172,12 +172,12 @@ def all_tables(routes: Sequence[Routes], task: TaskSettings, seeds: Sequence[int
         "What was taught",
         routes,
         _LENGTH,
-        middle("mid-level RLAs", "mid_rlas"),
-        quarters("mid_rlas"),
+        middle("mid-level RLAs", "lesson.mid_rlas"),
+        quarters("lesson.mid_rlas"),
         most("teaching, s", "lesson.teaching_s"),
-        middle("asks", "mid_asks"),
-        middle("corrections", "mid_corrections"),
-        middle("missed", "missed_junctions"),
+        middle("asks", "lesson.mid_asks"),
+        middle("corrections", "lesson.mid_corrections"),
+        middle("missed", "lesson.missed_junctions"),
         middle("basic RLAs", "lesson.rlas"),
         *(middle(name, f"lesson.{name}") for name in ("asks", "corrections", "rescues")),
         note=f"Medians of {len(seeds)} robots. Asks and corrections first of the mid level, then of the "
@@ -192,9 +192,9 @@ def all_tables(routes: Sequence[Routes], task: TaskSettings, seeds: Sequence[int
                 f"Each robot: {_length(each)}",
                 each.rows,
                 ("robot", lambda robot: robot.seed),
-                ("mid-level RLAs", lambda robot: robot.mid_rlas),
-                ("asks", lambda robot: robot.mid_asks),
-                ("corrections", lambda robot: robot.mid_corrections),
+                ("mid-level RLAs", lambda robot: robot.lesson.mid_rlas),
+                ("asks", lambda robot: robot.lesson.mid_asks),
+                ("corrections", lambda robot: robot.lesson.mid_corrections),
                 ("right", lambda robot: of_text(robot.drive.right, robot.drive.junctions)),
                 ("collisions", lambda robot: robot.drive.collisions),
                 ("drive, s", lambda robot: f"{robot.drive.duration_s:.0f}"),
@@ -231,11 +231,11 @@ def robot_table(outcome: RouteOutcome, task: TaskSettings) -> Table:
     drive, lesson, paper = outcome.drive, outcome.lesson, task.paper
     rows = (
         ("teacher", task.teaching.profile.name, "a person"),
-        ("mid-level RLAs", str(outcome.mid_rlas), str(paper.rlas)),
+        ("mid-level RLAs", str(outcome.lesson.mid_rlas), str(paper.rlas)),
         ("teaching, s of robot time", f"{lesson.teaching_s:.0f}", paper.teaching_time_text),
-        ("questions of the mid level", str(outcome.mid_asks), ""),
-        ("corrections of the mid level", str(outcome.mid_corrections), ""),
-        ("junctions that it did not notice", str(outcome.missed_junctions), ""),
+        ("questions of the mid level", str(outcome.lesson.mid_asks), ""),
+        ("corrections of the mid level", str(outcome.lesson.mid_corrections), ""),
+        ("junctions that it did not notice", str(outcome.lesson.missed_junctions), ""),
         ("RLAs of the basic level", str(lesson.rlas), ""),
         ("its questions", str(lesson.asks), ""),
         ("its corrections", str(lesson.corrections), ""),

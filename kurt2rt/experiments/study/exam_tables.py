@@ -143,7 +143,10 @@ def exams_as_data(exams: Sequence[DriveRow], task: TaskSettings) -> dict[str, An
 
 def curriculum_as_data(lesson: LessonCounts, exams: Sequence[DriveRow], task: TaskSettings) -> dict[str, Any]:
     """Return the numbers of one lesson and its exams, for JSON. Keys tell units, as in teaching_s."""
-    return {"lesson": lesson.model_dump(exclude={"knowledge_hash", "collisions"}), **exams_as_data(exams, task)}
+    return {
+        "lesson": lesson.model_dump(exclude={"knowledge_hash", "workload", "agreement"}),
+        **exams_as_data(exams, task),
+    }
 
 
 def exam_tables(exams: Sequence[DriveRow], task: TaskSettings) -> Iterator[Table]:

@@ -124,7 +124,7 @@ async def run_checkpoints(
         labels = lesson.labels[min(presses, len(lesson.labels) - 1)] if lesson.labels else ()
         now = (lessons, *map(id, labels))
         drives = checkpoints[-1].drives if now == before else await examine(events[: known + lessons], labels)
-        taught_s = ticks[presses] * period_s if presses < len(ticks) else lesson.teaching_s
+        taught_s = ticks[presses] * period_s if presses < len(ticks) else lesson.counts.teaching_s
         checkpoints.append(Checkpoint(presses=presses, teaching_s=taught_s, lessons=lessons, drives=drives))
         before = now
     return checkpoints

@@ -106,8 +106,8 @@ def checkpoints_of(folder: Path, task: TaskSettings, team: LearnerTeam | None) -
     async def lesson() -> GivenLesson:
         file = folder / "knowledge"
         given = await run_lesson(STAGE, ROBOT, task, file, seed=3903, report=lambda *_: None, learners=team)
-        points = await run_checkpoints(given, (*AFTER, given.result.presses), ROBOT.cycle_s, examine)
-        assert [each.presses for each in points] == [*AFTER, given.result.presses]
+        points = await run_checkpoints(given, (*AFTER, given.result.counts.presses), ROBOT.cycle_s, examine)
+        assert [each.presses for each in points] == [*AFTER, given.result.counts.presses]
         return given
 
     return anyio.run(lesson), examined

@@ -51,7 +51,7 @@ def test_the_teacher_says_go_and_the_lesson_goes_on(tmp_path: Path) -> None:
         return result
 
     result = anyio.run(lesson)
-    assert result.alarms == sum(minute.go for minute in result.workload) == 1
+    assert result.counts.alarms == sum(minute.go for minute in result.counts.workload) == 1
     at_the_alarm, a_second_later, end = (result.trail[at] for at in (26, 29, -1))
     assert at_the_alarm == a_second_later
     assert abs(end.x_m - a_second_later.x_m) + abs(end.y_m - a_second_later.y_m) > 0.2
@@ -67,8 +67,8 @@ def test_alarm_ended_by_a_demonstration_counts_once(tmp_path: Path) -> None:
         return result
 
     result = anyio.run(lesson)
-    assert [(minute.shown, minute.go) for minute in result.workload] == [(1, 1)]
-    assert result.alarms == 1
+    assert [(minute.shown, minute.go) for minute in result.counts.workload] == [(1, 1)]
+    assert result.counts.alarms == 1
 
 
 @dataclass(frozen=True)
@@ -91,8 +91,8 @@ def test_stop_for_a_broken_sensor_does_not_end_the_lesson(tmp_path: Path) -> Non
         return result
 
     result = anyio.run(lesson)
-    (minute,) = result.workload
-    assert (result.alarms, result.rescues) == (minute.go, minute.rescued) == (1, 1)
+    (minute,) = result.counts.workload
+    assert (result.counts.alarms, result.counts.rescues) == (minute.go, minute.rescued) == (1, 1)
     carried, end = result.trail[-15], result.trail[-1]
     assert abs(end.x_m - carried.x_m) + abs(end.y_m - carried.y_m) > 0.1
 

@@ -10,7 +10,7 @@ from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.platform.ledger import TickTimer
 from simbridge.contracts.simulation import Position
 from tests.experiments.helpers import STAGE, short_task
-from tests.experiments.rows import judged
+from tests.experiments.rows import judged, lesson
 
 
 @pytest.mark.parametrize(("worlds", "panels"), [((), 2), (("a", "b", "c"), 5)], ids=["lesson", "three exams"])
@@ -21,21 +21,15 @@ def test_the_picture_holds_the_lesson_its_growth_and_each_exam(
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
     exams = [judged(world=world, stuck=world == "b") for world in worlds]
     origin, trail = Origin("c", "Ann", Phase.SUPERVISED, 1), (Position(0.5, 0.5), Position(0.6, 0.5))
-    lesson = TrainingResult(
-        seed=1,
-        world="a",
-        teaching_s=345.0,
+    result = TrainingResult(
+        counts=lesson(1, rlas=20),
         rlas=tuple(Rla(number, (0.0,), "forward", None, origin) for number in range(1, 21)),
-        knowledge_hash="0" * 64,
-        asks=1,
-        corrections=52,
-        rescues=3,
         growth=tuple(range(20)),
         trail=trail,
         ask_positions=trail[1:],
         ledger=TickTimer(),
     )
-    draw_curriculum(lesson, exams, short_task(), STAGE, Path("never.png"))
+    draw_curriculum(result, exams, short_task(), STAGE, Path("never.png"))
     axes = [each for each in drawn[0].axes if each.axison]
     assert len(axes) == panels
     titles = [each.get_title() for each in axes]

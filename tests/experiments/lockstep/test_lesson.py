@@ -20,15 +20,20 @@ from tests.experiments.helpers import ROBOT, Taught, short_task, teach
 def test_a_robot_that_knows_nothing_asks_is_taught_and_drives(taught: Taught) -> None:
     result = taught.result
     assert result.growth[0] == 0  # the teacher thinks for a second
-    assert result.asks >= 2
+    assert result.counts.asks >= 2
     assert list(result.growth) == sorted(result.growth)
     assert len(result.growth) == 15
     assert result.growth[-1] == len(result.rlas) > 3
     first, last = result.trail[0], result.trail[-1]
     assert abs(last.x_m - first.x_m) + abs(last.y_m - first.y_m) > 0.5
     assert len(result.trail) == 75
-    assert len(result.ask_positions) == result.asks
-    assert (result.seed, result.world, result.teaching_s, result.rescues) == (1, "a", 15.0, 0)
+    assert len(result.ask_positions) == result.counts.asks
+    assert (result.counts.seed, result.counts.world, result.counts.teaching_s, result.counts.rescues) == (
+        1,
+        "a",
+        15.0,
+        0,
+    )
     assert taught.reported_s == [*map(float, range(1, 16)), 15.0]
 
 
@@ -40,7 +45,7 @@ def test_training_result_equals_the_knowledge_file(taught: Taught) -> None:
         assert journal.events() == taught.events
         statistics = journal.statistics()
     assert system.rlas == result.rlas
-    assert system.knowledge_hash() == result.knowledge_hash
+    assert system.knowledge_hash() == result.counts.knowledge_hash
     assert statistics.uses == result.saved.uses
     assert statistics.transitions == result.saved.transitions
     assert read_lessons(taught.knowledge, ROBOT, taught.task) == taught.events
@@ -52,7 +57,7 @@ def test_teacher_corrects_from_phase_2_on(taught: Taught) -> None:
     assert all((each.phase is Phase.SUPERVISED) is (each.tick <= 900) for each in origins)
     assert {each.phase for each in origins} == {Phase.SUPERVISED, Phase.CORRECTIONS}
     answers = sum(each.phase is Phase.SUPERVISED for each in origins)
-    assert answers + taught.result.corrections >= len(origins)
+    assert answers + taught.result.counts.corrections >= len(origins)
 
 
 def test_same_seed_gives_the_same_knowledge_and_trail(taught: Taught, tmp_path: Path) -> None:
@@ -89,7 +94,7 @@ def test_a_robot_that_makes_no_way_is_set_down_elsewhere(tmp_path: Path) -> None
     task = short_task(3.0, 0.0)
     impatient = task.teaching.model_copy(update={"rescue_after_s": 1.0})
     rescued = teach(tmp_path / "knowledge", task.model_copy(update={"teaching": impatient})).result
-    assert rescued.rescues > 0
+    assert rescued.counts.rescues > 0
 
 
 def test_lessons_that_cannot_be_saved_are_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -78,7 +78,7 @@ def test_rla_learner_drives_as_the_rla_level(name: str, teacher: str, seconds: f
     assert by_learner.lesson.press_ticks == own.lesson.press_ticks
     assert by_learner.store.events == own.store.events  # taught to the RLAs, too, as the journal's record
     assert by_learner.exam == own.exam
-    assert own.lesson.presses > 5
+    assert own.lesson.counts.presses > 5
     if name == "wall_following" and teacher == "ordinary":
         assert any(isinstance(event, LessonUndone) for event in own.store.events)
     assert own.exam.way_m > 1.0

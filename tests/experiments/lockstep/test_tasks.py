@@ -74,6 +74,6 @@ def test_the_robot_is_set_down_anew_where_the_task_says_so(tmp_path: Path) -> No
     task = lasting("circle_repositioned", 4.0, 4.5)
     often = task.teaching.model_copy(update={"reposition_every_s": 1.0})
     result = lesson(task.model_copy(update={"teaching": often}), tmp_path)
-    assert result.repositions == 8
+    assert result.counts.repositions == 8
     places = {(round(each.x_m, 1), round(each.y_m, 1)) for each in result.trail}
     assert len(places) > 8

@@ -42,10 +42,17 @@ def of_phase(phase: Phase, lasts_s: float = 6.0, **more: object) -> LessonPlan:
 def test_phase_3_stores_rewards_and_values(taught: Taught, tmp_path: Path) -> None:
     result, events = go_on(taught, tmp_path, of_phase(Phase.REINFORCEMENT, signs="judge"))
     rewards = [event for event in events if isinstance(event, RlaRewarded)]
-    assert len(rewards) == result.positive_rewards + result.negative_rewards - result.refused_signals > 0
+    assert (
+        len(rewards)
+        == result.counts.positive_rewards + result.counts.negative_rewards - result.counts.refused_signals
+        > 0
+    )
     assert {event.origin.phase for event in rewards} == {Phase.REINFORCEMENT}
-    assert sum(minute.rewards for minute in result.workload) == result.positive_rewards + result.negative_rewards
-    assert sum(minute.corrections for minute in result.workload) == 0
+    assert (
+        sum(minute.rewards for minute in result.counts.workload)
+        == result.counts.positive_rewards + result.counts.negative_rewards
+    )
+    assert sum(minute.corrections for minute in result.counts.workload) == 0
     with Journal.read_only(tmp_path / "knowledge") as journal:
         assert journal.statistics().values == result.saved.values
 
@@ -54,21 +61,21 @@ def test_phase_4_teaches_the_critic_after_repositioning(taught: Taught, tmp_path
     times = SignalTimes(good_every_s=1.0)
     plan = of_phase(Phase.CRITIC, 12.0, signs="judge", times=times, set_down_every_s=4.0, shown_s=1.0)
     result, events = go_on(taught, tmp_path, plan)
-    assert result.repositions == 3
-    assert [(minute.set_down, minute.shown) for minute in result.workload] == [(3, 3)]
+    assert result.counts.repositions == 3
+    assert [(minute.set_down, minute.shown) for minute in result.counts.workload] == [(3, 3)]
     critics = [event for event in events if isinstance(event, RlaCreated) and event.rla.level == CRITIC]
     assert critics
     assert all(isinstance(event, RlaCreated | Appraised) or event.origin.phase is Phase.CRITIC for event in events)
-    assert sum(minute.appraisals for minute in result.workload) >= len(critics)
-    assert len(result.agreement) == 1
+    assert sum(minute.appraisals for minute in result.counts.workload) >= len(critics)
+    assert len(result.counts.agreement) == 1
 
 
 def test_blame_by_chance_needs_no_judge_and_the_judge_s_does(taught: Taught, tmp_path: Path) -> None:
     blind = taught.task.model_copy(update={"judge": None})
     plan = of_phase(Phase.REINFORCEMENT, signs="chance", blame_by_chance=3)
     result, _ = go_on(taught, tmp_path, plan, blind)
-    assert result.negative_rewards == 3
-    assert result.positive_rewards == 0
+    assert result.counts.negative_rewards == 3
+    assert result.counts.positive_rewards == 0
     with pytest.raises(SettingsError):
         go_on(taught, tmp_path, of_phase(Phase.REINFORCEMENT, signs="judge"), blind)
 

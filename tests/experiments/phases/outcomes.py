@@ -10,7 +10,7 @@ from kurt2rt.experiments.phases.results import PhasesStudy, Stage
 from kurt2rt.experiments.phases.steps import Step
 from kurt2rt.experiments.phases.study import PhasesTask, StageOutcome, TeachingOutcome
 from kurt2rt.experiments.study.study_plan import StudyPlan
-from tests.experiments.rows import FAILED, PASSED, row
+from tests.experiments.rows import FAILED, PASSED, lesson, row
 
 TASK = load_task("wall_following")
 UNTAUGHT = (Step.UNTAUGHT, Step.PHASE_1, Step.CORRUPTED, Step.JUDGED)
@@ -39,7 +39,7 @@ def teaching(teaching_s: float = 120.0, *, blame: int = 0, **more: Any) -> Teach
         "critics_changes": 5,
         "rolled_back": 1,
     }
-    return TeachingOutcome.model_validate({**fields, **more})
+    return TeachingOutcome.model_validate({**dict(lesson(100)), **fields, **more})
 
 
 def stage(name: Step, *exams: DriveRow, taught: TeachingOutcome | None = None) -> StageOutcome:

@@ -67,7 +67,7 @@ def test_route_run_teaches_the_streets_once(done: Done) -> None:
     assert basic.knowledge.is_file()
     (taught,) = done.outcomes
     assert taught.lesson.teaching_s == 8.0
-    assert taught.mid_rlas == taught.mid_asks > 0
+    assert taught.lesson.mid_rlas == taught.lesson.mid_asks > 0
     assert done.progress[-1].done_s == 10.0 + 8.0 + 3.0
 
 

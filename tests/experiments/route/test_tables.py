@@ -13,15 +13,12 @@ SQUARE = ((2.2, 2.2), (2.2, 4.0), (4.0, 4.0), (4.0, 2.2))
 
 def outcome(seed: int, *layers: Layer, mid_rlas: int = 12, collisions: int = 0, stuck: bool = False) -> RouteOutcome:
     """Return a robot that did 80 decisions, of which each of the layers failed at one."""
+    mid = {"mid_rlas": mid_rlas, "mid_asks": 3, "mid_corrections": 8}
     return RouteOutcome(
         made_of=MADE_OF,
         seed=seed,
-        lesson=lesson(seed, teaching_s=797.0, rlas=150, asks=1, corrections=40, rescues=0),
+        lesson=lesson(seed, teaching_s=797.0, rlas=150, asks=1, corrections=40, rescues=0, **mid),
         route=SQUARE,
-        mid_rlas=mid_rlas,
-        mid_asks=3,
-        mid_corrections=8,
-        missed_junctions=0,
         drive=row(
             "manhattan",
             FAILED if layers or collisions or stuck else PASSED,

@@ -56,19 +56,19 @@ def test_lesson_of_two_minutes_is_equal_in_the_batch(name: str, teacher: str) ->
 def test_lesson_by_rewind_is_equal_in_the_batch() -> None:
     longer = {"teaching.corrections_s": "28"} if IS_COMPILED else {}
     lesson = equal_lesson(lesson_task("wall_following", "slow", longer), 2)
-    assert not IS_COMPILED or any(minute.stops for minute in lesson.result.workload)
+    assert not IS_COMPILED or any(minute.stops for minute in lesson.result.counts.workload)
 
 
 def test_lesson_with_collisions_is_equal_in_the_batch() -> None:
     task = lesson_task("fleeing", "superhuman", BLIND_TEACHER | {"teaching.reposition_every_s": "4"})
     result = equal_lesson(task, 1).result
-    assert not IS_COMPILED or result.collisions
-    assert not IS_COMPILED or result.repositions
+    assert not IS_COMPILED or result.counts.collisions
+    assert not IS_COMPILED or result.counts.repositions
 
 
 def test_stuck_robot_is_rescued_in_the_batch_as_on_the_bus() -> None:
     task = lesson_task("fleeing", "superhuman", BLIND_TEACHER | {"teaching.rescue_after_s": "2"})
-    assert not IS_COMPILED or equal_lesson(task, 1).result.rescues
+    assert not IS_COMPILED or equal_lesson(task, 1).result.counts.rescues
 
 
 def test_ticks_that_are_taken_back_leave_no_trace() -> None:
