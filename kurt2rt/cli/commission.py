@@ -45,34 +45,25 @@ from kurt2rt.service.shutdown import SHUTDOWN_SIGNALS
 _NAMES = ", ".join(step.name for step in STEPS)
 
 
-_Bus = Annotated[
-    str,
-    typer.Argument(help="The robot's bus: a SocketCAN interface such as can0, or shared:NAME.", show_default=False),
-]
-_Name = Annotated[str, typer.Option(help="What this robot is called: up to 40 of a-z, 0-9 and -.")]
-_Out = Annotated[
-    Path | None, typer.Option(help="The robot's settings file. Default: var/robots/NAME.yaml.", show_default=False)
-]
-_Only = Annotated[
-    str | None, typer.Option(help=f"Run only these steps, even if they passed: some of {_NAMES}.", show_default=False)
-]
-_Skip = Annotated[
-    str | None,
-    typer.Option(
-        help="Skip these steps, even if they failed, so that the file can be written without them.",
-        show_default=False,
-    ),
-]
-
-
 @dataclass(frozen=True, slots=True)
 class _Options:
-    bus: _Bus
-    name: _Name = "my-kurt2"
-    out: _Out = None
+    bus: Annotated[
+        str,
+        typer.Argument(help="The robot's bus: a SocketCAN interface such as can0, or shared:NAME.", show_default=False),
+    ]
+    name: Annotated[str, typer.Option(help="What this robot is called: up to 40 of a-z, 0-9 and -.")] = "my-kurt2"
     robot_settings: RobotName = None
-    only: _Only = None
-    skip: _Skip = None
+    only: Annotated[
+        str | None,
+        typer.Option(help=f"Run only these steps, even if they passed: some of {_NAMES}.", show_default=False),
+    ] = None
+    skip: Annotated[
+        str | None,
+        typer.Option(
+            help="Skip these steps, even if they failed, so that the file can be written without them.",
+            show_default=False,
+        ),
+    ] = None
 
 
 @takes_options(_Options)
@@ -112,7 +103,7 @@ def commission(options: _Options) -> None:
     Ends with code 1 if a step of this session failed.
     """
     console = Console()
-    target = _target(options.name, options.out)
+    target = _target(options.name)
     session = _session(options)
     _tell(console, f"{options.name} on {options.bus}; progress is kept in {session.path}; Ctrl-C brakes")
     _tell_earlier(console, session.progress, session.chosen)
@@ -138,15 +129,13 @@ def _session(options: _Options) -> "_Session":
     return _Session(base, progress, path, chosen, skipped)
 
 
-def _target(name: str, out: Path | None) -> Path:
+def _target(name: str) -> Path:
     """Return the settings file to write. Raises typer.BadParameter."""
     if not re.fullmatch(r"[a-z0-9][a-z0-9-]{0,39}", name):
         raise typer.BadParameter("up to 40 of a-z, 0-9 and -", param_hint="--name")
-    target = out or Path("var", "robots", f"{name}.yaml")
-    if target.suffix != ".yaml":
-        raise typer.BadParameter("a settings file ends in .yaml", param_hint="--out")
+    target = Path("var", "robots", f"{name}.yaml")
     if target.exists():
-        raise typer.BadParameter(f"{target} is there already; give another file, or remove it", param_hint="--out")
+        raise typer.BadParameter(f"{target} is there already; give another name, or move it", param_hint="--name")
     return target
 
 

@@ -1,10 +1,8 @@
 """`kurt2rt pair`."""
 
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, NamedTuple
-from urllib.parse import urlsplit
 
 import typer
 from rich.console import Console
@@ -17,15 +15,11 @@ from kurt2rt.cli.options import PageAddressName, SettingsName
 from kurt2rt.cli.qr_code import print_code
 from kurt2rt.cli.tables import console_of
 from kurt2rt.platform.text_table import TextTable, print_whole
-from kurt2rt.service.health.status_error import StatusError
-from kurt2rt.service.health.status_socket import read_reports, status_socket_path
 from kurt2rt.service.settings import load_service
 from kurt2rt.teacher.page.own_addresses import NO_ADDRESS
 from kurt2rt.teacher.page.served_pages import PageAddress, page_addresses
 
 _TIME = "%Y-%m-%d %H:%M"
-_PATIENCE_S = 2.0
-"""A robot program reports once a second."""
 
 
 _Name = Annotated[
@@ -88,8 +82,8 @@ def pair(
     else:
         change = pairing.renew if renew else pairing.pair
         changed = change(*pairings, name, port=service.port)
-        port = _port_of_running_page(Path(service.knowledge).parent) or service.page_port
-        _show(name, changed, page_addresses(changed.device, page_address or service.page_address, port))
+        addresses = page_addresses(changed.device, page_address or service.page_address, service.page_port)
+        _show(name, changed, addresses)
 
 
 class _Folders(NamedTuple):
@@ -105,15 +99,6 @@ def _list(pairings: _Folders, *, as_json: bool) -> None:
         print_json({"paired": [{**plain(row), "device": _where(row.name, pairings.devices)} for row in rows]})
     else:
         print_whole(console_of(), _table(*pairings))
-
-
-def _port_of_running_page(folder: Path) -> int | None:
-    """Return the TCP port at which a robot program with knowledge in `folder` serves its page; None without one."""
-    for path in sorted(folder.glob(status_socket_path(Path("*")).name)):
-        with suppress(StatusError):  # it ended, still waits for its robot, or does not answer
-            for link in next(read_reports(path, _PATIENCE_S)).pages:
-                return urlsplit(link).port
-    return None
 
 
 def _show(name: str, changed: Pairing, addresses: Sequence[PageAddress]) -> None:

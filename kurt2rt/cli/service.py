@@ -1,20 +1,14 @@
 """`kurt2rt service ...`."""
 
-import os
-import sys
-from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib.machinery import PathFinder
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from config.plugins import Plugin, is_target, loaded_plugins
 from config.settings_files import find_config
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import SettingsName
-from kurt2rt.core.task_settings import load_task
 from kurt2rt.service.settings import load_service
 from kurt2rt.service.systemd.access import RequiredAccess, paths_to_chown, require_access, start_command
 from kurt2rt.service.systemd.install import install as install_unit
@@ -108,10 +102,6 @@ def _unit(options: _UnitOptions) -> tuple[Unit, RequiredAccess]:
     state = STATE / name
     files = [found.absolute(), _as_the_service_finds("robot", loaded.robot, state)]
     files.append(_as_the_service_finds("task", loaded.task, state))
-    load_task(loaded.task)  # with the plug-ins that it names
-    for each in plugins_of_this_folder():
-        where, module = f"{each.group} {each.name}", each.name.partition(":")[0]
-        raise UnitError(UnitCode.MODULE_OF_THIS_FOLDER, where=where, module=module, file=each.source)
     folders = (Path(loaded.knowledge).parent, *map(Path, (loaded.teachers, loaded.devices, loaded.recordings)))
     wanted = RequiredAccess(
         tuple(each for each in files if not each.is_relative_to(state)),
@@ -126,21 +116,3 @@ def _as_the_service_finds(key: str, given: str, state: Path) -> Path:
     if found == Path(given) and not found.is_absolute():
         raise UnitError(UnitCode.RELATIVE_PATH, where=key, given=given, state=state)
     return found.absolute()
-
-
-def plugins_of_this_folder() -> Iterator[Plugin]:
-    """Yield each plug-in loaded by `module:Name` whose module is neither installed nor part of Python.
-
-    A service runs in a folder of its own, without PYTHONPATH, so it would not find that module.
-    """
-    for plugin in loaded_plugins():
-        if is_target(plugin.name) and not _is_installed(plugin.name.partition(":")[0].partition(".")[0]):
-            yield plugin
-
-
-def _is_installed(module: str) -> bool:
-    mine = {Path.cwd(), *(Path(each).absolute() for each in os.environ.get("PYTHONPATH", "").split(os.pathsep) if each)}
-    path = [each for each in sys.path if Path(each).absolute() not in mine]
-    finders = (each for each in sys.meta_path if each is not PathFinder and hasattr(each, "find_spec"))
-    # Other finders than that of the path are those of built-in modules and of packages installed for editing.
-    return PathFinder.find_spec(module, path) is not None or any(each.find_spec(module, None) for each in finders)

@@ -6,7 +6,6 @@ import sys
 import time
 from contextlib import ExitStack
 from dataclasses import dataclass
-from types import FrameType
 from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
@@ -99,18 +98,28 @@ def _simulate(options: _Options, settings: RobotSettings) -> None:
         raise SettingsError(
             f"has {poses} start poses, there is none of number {options.start}", where=f"world {options.world}"
         )
+    console = Console()
     with ExitStack() as stack:
-        end = _EndRequest()
+        signals: list[int] = []
         # Without SIGTTIN ignored, a process in the background would be halted as it reads the keyboard.
         stack.enter_context(
-            SignalHandlers({**dict.fromkeys(_END_SIGNALS, end.on_signal), signal.SIGTTIN: signal.SIG_IGN})
+            SignalHandlers(
+                {
+                    **dict.fromkeys(_END_SIGNALS, lambda number, _: signals.append(number)),
+                    signal.SIGTTIN: signal.SIG_IGN,
+                }
+            )
         )
-        output = _Output(stack.enter_context(ConsoleThread()))
+        printer = stack.enter_context(ConsoleThread())
+
+        def log(text: str) -> None:
+            printer.submit(lambda: console.print(text, markup=False, highlight=False, soft_wrap=True))
+
         robot_end = cast("RobotEnd", kind_of(settings).serve(settings, options.bus))
         standalone = StandaloneRobot(
             ground_plan, robot_end, options.seed, start=options.start, cycle_s=settings.cycle_s
         )
-        output.log(
+        log(
             f"a simulated {settings.name} in world {options.world} is on {robot_end.name}; "
             "type help, Ctrl-C switches it off"
         )
@@ -118,51 +127,26 @@ def _simulate(options: _Options, settings: RobotSettings) -> None:
         stack.enter_context(standalone)
         simulation = standalone.simulation
         world = RealtimeWorld(standalone.robot, ground_plan, settings.geometry, simulation)
-        console, keyboard = SimConsole(standalone, ground_plan, world), TypedLines(sys.stdin)
+        desk, keyboard = SimConsole(standalone, ground_plan, world), TypedLines(sys.stdin)
         news, line = News(standalone), StatusLine(standalone)
         ends_at_s = math.inf if options.seconds is None else time.monotonic() + options.seconds
         status_at_s = time.monotonic() + _STATUS_S
-        while not end.requested:
+        while not signals:
             time.sleep(_POLL_S)
             for typed in keyboard.typed():
-                output.log(console.obey(typed))
+                log(desk.obey(typed))
             for each in news.since():
-                output.log(each)
+                log(each)
             now_s = time.monotonic()
             if now_s >= status_at_s:
                 status_at_s += _STATUS_S
-                output.log(line.next())
+                log(line.next())
             if now_s >= ends_at_s or simulation.error is not None or (options.while_stdin and keyboard.ended):
                 break
     robot = standalone.robot
-    output.print(
+    console.print(
         f"switched off after {robot.time_s:.2f} s: {robot.collisions} collisions, "
-        f"{simulation.missed_cycles} cycles missed, state {robot.state_hash()[:16]}"
+        f"{simulation.missed_cycles} cycles missed, state {robot.state_hash()[:16]}",
+        highlight=False,
+        soft_wrap=True,
     )
-
-
-class _Output:
-    """Lines on standard output, printed by a thread while the simulation runs."""
-
-    def __init__(self, printer: ConsoleThread) -> None:
-        self._console = Console()
-        self._printer = printer
-
-    def log(self, text: str) -> None:
-        """Print a line soon; never waits."""
-        self._printer.submit(lambda: self.print(text))
-
-    def print(self, text: str) -> None:
-        """Print a line; waits for the terminal."""
-        self._console.print(text, markup=False, highlight=False, soft_wrap=True)
-
-
-class _EndRequest:
-    """Flag that a signal sets; the loop of the simulation reads it."""
-
-    def __init__(self) -> None:
-        self.requested = False
-
-    def on_signal(self, _number: int, _frame: FrameType | None) -> None:
-        """Request the end."""
-        self.requested = True

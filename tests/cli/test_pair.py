@@ -1,13 +1,10 @@
 import json
-from collections.abc import Iterator
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
 from kurt2rt.channel.security.pairing import Device, local_pairing, read_device
 from kurt2rt.cli.qr_code import qr_code
-from kurt2rt.service.health.status_error import StatusCode, StatusError
 from kurt2rt.teacher.page import own_addresses
 from kurt2rt.teacher.page.own_addresses import NO_ADDRESS
 from tests.cli.helpers import CommandLine
@@ -37,24 +34,6 @@ def test_pair_without_a_network_shows_no_code(kurt2rt: CommandLine, monkeypatch:
     assert NO_ADDRESS in said.out
     assert "?token=" not in said.out
     assert "█" not in said.out
-
-
-def test_pair_asks_the_running_program_for_its_port(kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = []
-
-    def read_reports(path: Path, _: float) -> Iterator[SimpleNamespace]:
-        asked.append(path.name)
-        if path.stem == "a.knowledge":
-            raise StatusError(StatusCode.NO_PROGRAM, knowledge=path)
-        yield SimpleNamespace(pages=("http://127.0.0.1:9100/pair?token=a",) if path.stem == "c.knowledge" else ())
-
-    Path("var").mkdir()
-    for name in "abcd":
-        Path(f"var/{name}.knowledge.status").touch()
-    monkeypatch.setattr("kurt2rt.cli.pair.read_reports", read_reports)
-    said = kurt2rt("pair", "phone", "--page-address", "robot.lan")
-    assert "http://robot.lan:9100/pair?token=" in said.out
-    assert asked == ["a.knowledge.status", "b.knowledge.status", "c.knowledge.status"]
 
 
 @pytest.mark.parametrize("address", ["http://robot.lan", "10.0.0.7:8642", "fe80::1%wlan0", ""])

@@ -32,44 +32,40 @@ def list_files(
     if not place.exists():
         raise KnowledgeError(KnowledgeCode.NO_SUCH_FOLDER, where=place)
     paths = sorted(place.rglob("*.knowledge")) if place.is_dir() else [place]
-    rows: dict[Path, tuple[str, str, str, str, str]] = {}
+    rows: list[dict[str, object]] = []
     unreadable: dict[Path, str] = {}
     for path in paths:
         try:
-            rows[path] = _row(path)
+            rows.append(_row(path))
         except KnowledgeError as error:
             if not place.is_dir():
                 raise
             unreadable[path] = str(error)
     if as_json:
-        files = [
-            {
-                "file": path,
-                "task": task,
-                "rlas": int(rlas),
-                "lessons": int(lessons),
-                "newest": newest,
-                "came_from": came,
-            }
-            for path, (task, rlas, lessons, newest, came) in rows.items()
-        ]
-        print_json({"files": files, "unreadable": [{"file": path, "why": why} for path, why in unreadable.items()]})
+        print_json({"files": rows, "unreadable": [{"file": path, "why": why} for path, why in unreadable.items()]})
         return
     table = TextTable()
     for heading in ("file", "task", "RLAs", "lessons", "newest (UTC)", "came from"):
         table.add_column(heading, number=heading in ("RLAs", "lessons"), whole=heading in ("file", "newest (UTC)"))
-    for path, row in rows.items():
-        table.add_row(printable(str(path)), *map(printable, row))
-    if table.row_count:
+    for row in rows:
+        table.add_row(*(printable(str(each)) for each in row.values()))
+    if rows:
         print_whole(console_of(), table)
     elif not unreadable:
         say(f"{place}: holds no knowledge file (*.knowledge)")
     print_whole(console_of(), *(printable(f"cannot be read: {why}") for why in unreadable.values()))
 
 
-def _row(path: Path) -> tuple[str, str, str, str, str]:
+def _row(path: Path) -> dict[str, object]:
+    """Return what the list tells of a file, in the order of its columns."""
     with Journal.read_only(path) as journal:
         entries, came = journal.entries(), journal.notes().get(IMPORTED_FROM, "")
         system = fold_entries(journal, entries, radius=math.inf)
-    newest = entries[-1].stamped_at[:19].replace("T", " ") if entries else ""
-    return journal.binding.system, str(len(system)), str(system.history.standing), newest, came
+    return {
+        "file": path,
+        "task": journal.binding.system,
+        "rlas": len(system),
+        "lessons": system.history.standing,
+        "newest": entries[-1].stamped_at[:19].replace("T", " ") if entries else "",
+        "came_from": came,
+    }

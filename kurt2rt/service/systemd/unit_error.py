@@ -19,11 +19,6 @@ class UnitCode(TextCode):
         "{given}: the service would look for it in {state}",
         "give its whole path in the settings",
     )
-    MODULE_OF_THIS_FOLDER = (
-        "module of this folder",
-        "the service would not find {module}: it is in {file}, and is not installed",
-        "make a package of it and install it next to kurt2rt (docs/extend.md)",
-    )
     INSTALLATION_UNREADABLE = (
         "installation unreadable",
         _UNREADABLE,

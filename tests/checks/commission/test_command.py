@@ -121,8 +121,7 @@ def test_commission_that_cannot_start_prints_one_line(
         (("can0", "--name", "My Robot"), "a-z, 0-9"),
         (("can0", "--only", "identity,dance"), "identity, lifted, modes, wheels, stop"),
         (("can0", "--skip", "dance"), " dance;"),
-        (("can0", "--out", "mine.txt"), ".yaml"),
-        (("can0", "--out", "mine.yaml"), "is there already"),
+        (("can0", "--name", "mine"), "is there already"),
         ((), "Missing argument"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
@@ -130,6 +129,8 @@ def test_commission_that_cannot_start_prints_one_line(
 def test_an_option_that_makes_no_sense_is_named(
     kurt2rt: CommandLine, tmp_path: Path, words: tuple[str, ...], why: str
 ) -> None:
-    (tmp_path / "mine.yaml").write_text("my own: file")
+    mine = tmp_path / "var" / "robots" / "mine.yaml"
+    mine.parent.mkdir(parents=True)
+    mine.write_text("my own: file")
     assert why in kurt2rt.misused("commission", *words)
-    assert (tmp_path / "mine.yaml").read_text() == "my own: file"
+    assert mine.read_text() == "my own: file"

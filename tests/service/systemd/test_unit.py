@@ -161,17 +161,6 @@ def test_install_refuses_what_could_never_start(kurt2rt: CommandLine, tmp_path: 
     assert str(error) in said
 
 
-def test_task_of_a_module_of_this_folder_is_refused(kurt2rt: CommandLine, plugin_folder: Path) -> None:
-    text = (CONFIG_DIR / "tasks" / "fleeing.yaml").read_text(encoding="utf-8")
-    (plugin_folder / "task.yaml").write_text(text, encoding="utf-8")
-    (plugin_folder / "my_tasks.py").write_text(
-        "from pathlib import Path\nFLEE = Path(__file__).with_name('task.yaml')\n"
-    )
-    settings = settings_in(plugin_folder, task="my_tasks:FLEE")
-    said = kurt2rt.refused("service", "show", "--settings", settings)
-    assert f"would not find my_tasks: it is in {plugin_folder / 'my_tasks.py'}" in said
-
-
 def test_show_prints_the_unit_for_this_installation(
     kurt2rt: CommandLine, plugin_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
