@@ -87,7 +87,7 @@ class TerminalScreen:
             self._print_alarm(" | ".join([*held, *wrong]), "yellow")
         elif self._as_service:
             # The log gets changes only; the present status is the unit's.
-            stands = [format_activity(status)] if status.runtime.handler.active_stop else []
+            stands = [format_activity(status)] if status.runtime.handler.stops.active else []
             told = " | ".join([*stands, *format_problems(status, health), *more])
             self._print_alarm(told, None if stands else "red")
         else:

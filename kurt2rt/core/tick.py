@@ -191,7 +191,7 @@ class Tick:
         events: list[TeachingEvent] = []
         for command in commands:
             if isinstance(command, Stream):
-                self._handler.handle_stream(command, tick)
+                self._handler.streams.handle(command, tick)
             elif isinstance(command, PairingRenewed | SpeedChanged | RobotRepositioned):
                 self._apply_system_event(command)
             else:
@@ -304,7 +304,7 @@ class Tick:
         # The later of both times: the clock of a replay stands still within a tick.
         standing_at_s = max(now_s, motion.drove_at_s)
         error = choice.saving_error or self._handler.learner_failure
-        standing = self._standing.update(decision, motion.result, standing_at_s, self._handler.active_stop, error)
+        standing = self._standing.update(decision, motion.result, standing_at_s, self._handler.stops.active, error)
         results = tell_hindrance(choice.results, standing, motion.result)
         if results and any(result.lesson for result in results):
             self._question.close()
@@ -338,9 +338,9 @@ class Tick:
                 self._handler.authority.reset_sequence(teacher)
             case SpeedChanged(times, falls_behind):
                 before, self._handler.authority.speed = self._handler.authority.speed, times
-                stop = self._handler.active_stop
+                stop = self._handler.stops.active
                 if falls_behind and stop is not None and stop.reason is StopReason.LINK_LOST:
-                    self._handler.active_stop = ActiveStop(StopReason.FALLS_BEHIND, str(before))
+                    self._handler.stops.active = ActiveStop(StopReason.FALLS_BEHIND, str(before))
             case RobotRepositioned():
                 if self._handler.mid is not None:
                     self._handler.mid.mid.restart()
@@ -404,7 +404,7 @@ class Tick:
     def _stand_cause(self, tick: int, *, blind: bool) -> DecisionCause | None:
         """Return the cause that RLAs may not drive; None if they may."""
         handler = self._handler
-        if handler.active_stop is not None:
+        if handler.stops.active is not None:
             return DecisionCause.STOPPED
         cause = self._blocking_cause(blind=blind)
         if cause is None and handler.requires_teacher and not handler.authority.is_present(tick):

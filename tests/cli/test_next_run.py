@@ -56,8 +56,8 @@ async def test_next_run_in_phase_5_with_a_session_stands_until_go(tmp_path: Path
     for command in runs.present.first_commands:
         desk.runtime.inbox.put(command)
     record = desk.run(10, counts=300)
-    assert (school.phase, school.session, school.authority.teacher) == (Phase.AUTONOMOUS, "noon", "ann")
-    assert (school.active_stop, record.guard_result.wheel_speeds) == (NEXT_RUN, STANDSTILL)
+    assert (school.phase, school.clock.session, school.authority.teacher) == (Phase.AUTONOMOUS, "noon", "ann")
+    assert (school.stops.active, record.guard_result.wheel_speeds) == (NEXT_RUN, STANDSTILL)
 
 
 @pytest.mark.parametrize(

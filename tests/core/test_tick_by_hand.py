@@ -289,7 +289,7 @@ class Witness:
             assert press not in self.drove or self.hand == hand
             self.drove.add(press)
         if moves and decision.cause is DecisionCause.TEACHER and school.authority.held_press is not None:
-            assert school.active_stop is None
+            assert school.stops.active is None
             assert not self.stops
             assert any(
                 who == teacher and record.tick - arrived < LEASE and record.tick - seen < REACH

@@ -144,7 +144,7 @@ class Bedlam(Town):
         there = school.authority.is_present(self.tick) or school.phase is Phase.AUTONOMOUS
         stands_at_goal = decision.plan is not None and decision.plan.course in (GoalStatus.ARRIVED, GoalStatus.NO_WAY)
         asks = decision.mid is None or decision.mid.asks
-        return there and not school.active_stop and not asks and (mid.overridden or not stands_at_goal)
+        return there and not school.stops.active and not asks and (mid.overridden or not stands_at_goal)
 
 
 def check(task: TaskSettings, seed: int, ticks: int) -> None:

@@ -217,7 +217,7 @@ class OffTickRequests:
         if self._changing_run:
             return self._refused(Outcome(RefusalCode.NEXT_RUN_UNDER_WAY))
         commands = self._runtime.handler
-        teacher = TeacherNow(device, int(commands.phase), commands.session)
+        teacher = TeacherNow(device, int(commands.phase), commands.clock.session)
         if isinstance(request, LoadRequest):
             try:
                 content = self._upload.pop(device, request.upload, request.sha256)

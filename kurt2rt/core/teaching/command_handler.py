@@ -101,6 +101,8 @@ class CommandHandler:
         self.recent = DecisionHistory(level.system.dimensions) if reinforcement is None else reinforcement.recent
         self._rewind = RewindHistory(self.recent)
         self._lessons = LessonBuilder(level, self.recent, self._rewind, insert_radius_fraction, parts)
+        self.corrections_at = self._lessons.corrections_at
+        """Number of corrections in this run, by level."""
         self.delay = parts.delay or TeacherDelay()
         self.holds = HoldLessons(self._lessons, level.system, self.recent, self.delay)
         self.demonstration = Demonstration(self._lessons, level.system, authority.repertoire, self.recent)
@@ -112,29 +114,11 @@ class CommandHandler:
         self.phase = Phase.SUPERVISED
         self.lesson_speed = LessonSpeed(parts.lesson_speed)
         self._selection = BehaviourSelection(self.active_behaviour, parts.mid)
-        self._clock = SessionClock()
-
-    @property
-    def active_stop(self) -> ActiveStop | None:
-        """Stop that lasts until `Resume`; None without one. It can be set."""
-        return self.stops.active
-
-    @active_stop.setter
-    def active_stop(self, stop: ActiveStop | None) -> None:
-        self.stops.active = stop
+        self.clock = SessionClock()
 
     def was_handled(self, command_id: str) -> bool:
         """Return whether a command of this id was carried out already."""
         return command_id in self.updater.handled_ids
-
-    @property
-    def corrections(self) -> int:
-        """Number of corrections of the basic level in this run."""
-        return self.corrections_at(BASIC)
-
-    def corrections_at(self, level_name: str) -> int:
-        """Return the number of corrections of a level, such as BASIC or MID, in this run."""
-        return self._lessons.corrections_at[level_name]
 
     def stop(self, stop: ActiveStop, by: str | None = None) -> None:
         """Stand until `Resume`; `by`: teacher who stopped the robot and may still drive it by hand."""
@@ -149,15 +133,6 @@ class CommandHandler:
     def learner_failure(self) -> str | None:
         """Failure of the learner that decides instead of the RLAs, in one line; None without one."""
         return None if self._learner is None else self._learner.team.failure or None
-
-    @property
-    def session(self) -> str | None:
-        """Name of the open session; None without one."""
-        return self._clock.session
-
-    def teaching_ticks(self, tick: int) -> int:
-        """Return the length of the open session at `tick`, or of the last one, in ticks."""
-        return self._clock.ticks(tick)
 
     def before_decision(self, tick: int, *, was_driving: bool, turned: bool) -> None:
         """Stop a robot that drove and whose required teacher is absent; call it before each decision.
@@ -206,10 +181,6 @@ class CommandHandler:
         """Return whether the robot drives by its RLAs only while a teacher is present."""
         return self.authority.attended and self.phase is not AUTONOMOUS
 
-    def handle_stream(self, command: Stream, tick: int) -> Outcome | None:
-        """Apply a message of a stream, in which only the newest counts; return a refusal, or None if applied."""
-        return self.streams.handle(command, tick)
-
     def sample_manual_drive(self, tick: int, readings: SensorReadings, speeds: WheelSpeeds) -> None:
         """Sample speeds that the teacher drives by hand in this tick; an action that runs is no demonstration."""
         authority = self.authority
@@ -245,7 +216,7 @@ class CommandHandler:
         """Carry out one command in this tick; return its result and the events that it caused, oldest first.
 
         The events are applied already and must be submitted to the journal. A refusal is a result, no error.
-        `situation`: of this tick. `command`: no message of a stream; those go to `handle_stream`.
+        `situation`: of this tick. `command`: no message of a stream; those go to `streams`.
         """
         assert not isinstance(command, Stream)
         # Every copy of a stop brakes: a copy may be the one that matters.
@@ -350,8 +321,8 @@ class CommandHandler:
         return self._goals
 
     def _session(self, command: BeginSession | EndSession, tick: int) -> tuple[Outcome, TeachingEvent]:
-        name = self.session
-        taken = self._clock.apply(command, tick, self._origin(command, tick))
+        name = self.clock.session
+        taken = self.clock.apply(command, tick, self._origin(command, tick))
         if isinstance(command, EndSession):
             # An earlier reason stays: the end of a session must not hide a teacher's stop.
             self.stop(self.stops.active or ActiveStop(StopReason.SESSION_OVER, name or ""), command.teacher)

@@ -215,7 +215,7 @@ class BatchTrainingRun(TrainingRun):
 
     def _follow_detector(self, detector: StuckDetector, begin: int, end: int) -> int | None:
         """Let a detector see the ticks from `begin` + 1 to `end`; return the tick in which it finds the robot stuck."""
-        if self.runtime.handler.active_stop is not None:
+        if self.runtime.handler.stops.active is not None:
             return None
         log = self.robot.log
         asks = log.causes[begin + 1 : end + 1] == _UNKNOWN

@@ -11,7 +11,7 @@ from config.settings import Settings
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.learner.learner import Label
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.rla import MID, Phase, Rla
+from kurt2rt.core.rla.rla import BASIC, MID, Phase, Rla
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Command, DeleteRla, Resume, Reward
@@ -249,7 +249,7 @@ class TrainingRun(Episode):
             rlas=len(system.rlas),
             knowledge_hash=system.knowledge_hash(),
             asks=len(self.ask_positions),
-            corrections=runtime.handler.corrections,
+            corrections=runtime.handler.corrections_at[BASIC],
             presses=sum(minute.presses for minute in minutes),
             rescues=self._rescues,
             repositions=self.repositions,
@@ -266,7 +266,7 @@ class TrainingRun(Episode):
             share_trusted=self._trusted_ticks / ticks,
             mid_rlas=len(mid_rlas),
             mid_asks=self.mid_asks,
-            mid_corrections=runtime.handler.corrections_at(MID),
+            mid_corrections=runtime.handler.corrections_at[MID],
             missed_junctions=0 if self._dispatcher is None else self._dispatcher.missed,
         )
         return TrainingResult(
@@ -337,7 +337,7 @@ class TrainingRun(Episode):
         self._reposition_as_planned(tick)
 
     def _end_sensor_stop(self, tick: int) -> None:
-        act = self._sensor_stop.update(self.runtime.handler.active_stop)
+        act = self._sensor_stop.update(self.runtime.handler.stops.active)
         if act is SensorStopAct.CARRY_AWAY:
             self._rescue(tick)
         elif act is SensorStopAct.RESUME:
@@ -345,7 +345,7 @@ class TrainingRun(Episode):
             self._count_alarm(tick)
 
     def _rescue_if_stuck(self, tick: int) -> None:
-        if self.runtime.handler.active_stop is not None:
+        if self.runtime.handler.stops.active is not None:
             return  # the teacher looks back; the time of the stuck detector stands still with the robot
         waiting = self.asking and self._teacher.available
         # A robot that asks again and again while it touches a wall does not get away either.

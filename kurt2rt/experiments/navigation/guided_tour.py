@@ -9,7 +9,7 @@ from behaviors.metrics.errands import Errands, ErrandsSettings
 from behaviors.metrics.town import Street
 from config.settings import Settings, SettingsError
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.rla.rla import MID, Phase
+from kurt2rt.core.rla.rla import BASIC, MID, Phase
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import BeAt, Command, NameSituation, Pursue, Teach
@@ -280,7 +280,7 @@ class TourRun(Episode):
         if self.latched_ticks == self.ticks_per_second:
             self.send(self._teacher.resume())
             self.latched_ticks = 0
-        act = self._sensor_stop.update(self.runtime.handler.active_stop)
+        act = self._sensor_stop.update(self.runtime.handler.stops.active)
         if act is SensorStopAct.RESUME:
             self.send(self._teacher.resume())
         if act is SensorStopAct.CARRY_AWAY or self._is_lost():
@@ -290,7 +290,7 @@ class TourRun(Episode):
 
     def _is_lost(self) -> bool:
         """Return whether the robot made no way for too long; a teacher who looks back stops that time."""
-        if self.runtime.handler.active_stop is not None:
+        if self.runtime.handler.stops.active is not None:
             return False
         self._asking_ticks = self._asking_ticks + 1 if self.asking else 0
         return self.is_stuck(waiting=self.asking and self._asking_ticks < self._unanswered_ticks)
@@ -305,7 +305,7 @@ class TourRun(Episode):
             basic_rlas=len(system),
             mid_asks=self.mid_asks,
             missed_junctions=self._guide.missed,
-            corrections=self.runtime.handler.corrections,
+            corrections=self.runtime.handler.corrections_at[BASIC],
             rescues=self._rescues,
             led=rounded_places(self.trail),
             knowledge_hash=system.knowledge_hash(),

@@ -64,7 +64,7 @@ def collect_facts(
         granted=record.guard_result.wheel_speeds,
         reasons=record.guard_result.reasons,
         latched=record.guard_result.latched,
-        stopped=school.active_stop,
+        stopped=school.stops.active,
         trouble=record.saving_error or school.learner_failure or "",
         teacher=school.authority.teacher or "",
         infrared_counts=record.trusted_counts or record.readings.infrared_counts,

@@ -18,6 +18,7 @@ from kurt2rt.channel.protocol.requests import HelloRequest, LessonsRequest, Stop
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.server.datagram_filter import LONGEST_DATAGRAM, SocketAddress
 from kurt2rt.core.decision.active_stop import ActiveStop
+from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Drive, HoldAction, Resume, Take, Teach
 from kurt2rt.teacher import TeacherClient
 from tests.channel.hostile_datagrams import HostileDatagrams
@@ -68,11 +69,11 @@ def effects(at_work: RobotAtWork) -> Effects:
     return Effects(
         school.authority.teacher,
         school.phase,
-        school.active_stop,
-        school.session,
+        school.stops.active,
+        school.clock.session,
         len(system),
         system.history.standing,
-        school.corrections,
+        school.corrections_at[BASIC],
         len(at_work.runtime.inbox.pop_all()),
     )
 

@@ -124,9 +124,9 @@ def test_every_word_of_the_guard_that_stops_the_robot_is_known() -> None:
 def test_a_robot_without_its_teacher_waits_for_no_go() -> None:
     desk = LatchingDesk()
     desk.runtime.handler.authority.attended = True
-    desk.runtime.handler.active_stop = None
+    desk.runtime.handler.stops.active = None
     desk.run()
-    desk.runtime.handler.active_stop = None  # that it lost its teacher on the way is another story
+    desk.runtime.handler.stops.active = None  # that it lost its teacher on the way is another story
     desk.run()
     assert desk.record.standing == Standing(StandReason.UNATTENDED)
     desk.runtime.inbox.put(Watch("Ann", desk.tick))

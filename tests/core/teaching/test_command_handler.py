@@ -16,7 +16,7 @@ from kurt2rt.core.rla.events import (
     SessionEnded,
     TeachingEvent,
 )
-from kurt2rt.core.rla.rla import Origin, Phase, Rla
+from kurt2rt.core.rla.rla import BASIC, Origin, Phase, Rla
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import (
@@ -83,7 +83,7 @@ class Lesson:
     def drive(self, teacher: str = "Ann", hold: int = 1) -> Outcome | None:
         """Have a press arrive in the next tick; return why it does not drive the robot."""
         self.tick += 1
-        refusal = self.school.handle_stream(Drive(teacher, self.tick, hold, 0.1, 0.1), self.tick)
+        refusal = self.school.streams.handle(Drive(teacher, self.tick, hold, 0.1, 0.1), self.tick)
         assert (refusal is None) == self.school.authority.is_manual(self.tick)
         return refusal
 
@@ -117,7 +117,7 @@ def test_unknown_action_is_refused_with_the_known_ones(command: Command) -> None
     assert result.outcome == Outcome.of(RefusalCode.NO_ACTION, action="fly", known=("a", "b", "c"))
     assert lesson.actions == {1: "a"}
     assert len(lesson.events) == 1
-    assert lesson.school.corrections == 0
+    assert lesson.school.corrections_at[BASIC] == 0
 
 
 @pytest.mark.parametrize(
@@ -127,20 +127,20 @@ def test_unknown_action_is_refused_with_the_known_ones(command: Command) -> None
 def test_a_command_that_comes_twice_counts_once(command: Command) -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     assert lesson.say(command, place=100.0).accepted
-    known, corrections = lesson.actions, lesson.school.corrections
+    known, corrections = lesson.actions, lesson.school.corrections_at[BASIC]
     events = list(lesson.events)
     for place in (100.0, 200.0):
         assert lesson.say(command, place) == CommandResult("x", Outcome(ResultCode.REPEATED))
-    assert (lesson.actions, lesson.events, lesson.school.corrections) == (known, events, corrections)
+    assert (lesson.actions, lesson.events, lesson.school.corrections_at[BASIC]) == (known, events, corrections)
 
 
 def test_stop_always_stops_and_late_copy_of_resume_does_not_act() -> None:
     lesson = Lesson()
     for command, stopped in ((stop("1"), True), (resume("2"), False), (stop("1"), True)):
         lesson.say(command)
-        assert bool(lesson.school.active_stop) == stopped
+        assert bool(lesson.school.stops.active) == stopped
     lesson.say(resume("2"))
-    assert lesson.school.active_stop
+    assert lesson.school.stops.active
 
 
 def test_a_command_of_an_earlier_run_counts_once_as_well() -> None:
@@ -217,27 +217,27 @@ def test_session_begins_and_ends_once_and_its_clock_runs() -> None:
     lesson = Lesson()
     school = lesson.school
     assert lesson.say(EndSession("e-0", "Ann")).outcome == Outcome(RefusalCode.NO_SESSION)
-    assert school.teaching_ticks(lesson.tick) == 0
+    assert school.clock.ticks(lesson.tick) == 0
     assert lesson.say(BeginSession("b-1", "Ann", "morning")).outcome == Outcome.of(
         ResultCode.SESSION_BEGUN, session="morning"
     )
     began = lesson.tick
     refused = lesson.say(BeginSession("b-2", "Ann", "noon"))
     assert refused.outcome == Outcome.of(RefusalCode.SESSION_ON, session="morning")
-    assert (school.session, school.teaching_ticks(began + 70)) == ("morning", 70)
+    assert (school.clock.session, school.clock.ticks(began + 70)) == ("morning", 70)
 
     lesson.tick = began + 99
     result = lesson.say(EndSession("e-1", "Ann"))
     assert (result.outcome, result.lesson) == (Outcome.of(ResultCode.SESSION_ENDED, session="morning"), True)
-    assert school.active_stop == ActiveStop(StopReason.SESSION_OVER, "morning")
-    assert school.teaching_ticks(began + 5000) == 100
+    assert school.stops.active == ActiveStop(StopReason.SESSION_OVER, "morning")
+    assert school.clock.ticks(began + 5000) == 100
     assert lesson.say(EndSession("e-2", "Ann")).outcome == Outcome(RefusalCode.NO_SESSION)
     assert lesson.events == [
         SessionBegun("morning", Origin("b-1", "Ann", Phase.SUPERVISED, began)),
         SessionEnded(100, Origin("e-1", "Ann", Phase.SUPERVISED, began + 100)),
     ]
     lesson.say(BeginSession("b-3", "Ann", "noon"))
-    assert school.teaching_ticks(lesson.tick) == 0
+    assert school.clock.ticks(lesson.tick) == 0
 
 
 def test_everybody_may_stop_and_nobody_becomes_the_teacher_by_it() -> None:
@@ -246,7 +246,7 @@ def test_everybody_may_stop_and_nobody_becomes_the_teacher_by_it() -> None:
     assert lesson.school.authority.refusal_for("Dora") is None
     lesson.say(teach("a", "2"))
     lesson.say(Stop("3", "Cleo"))
-    assert (lesson.school.active_stop, lesson.school.authority.teacher) == (
+    assert (lesson.school.stops.active, lesson.school.authority.teacher) == (
         ActiveStop(StopReason.SAID_STOP, "Cleo"),
         "Ann",
     )
@@ -289,7 +289,7 @@ def test_take_over_clears_the_last_teachers_stop_only() -> None:
     lesson.drive(hold=1)
     lesson.say(stop("1"))
     lesson.say(Take("2", "Ben"))
-    assert lesson.school.active_stop
+    assert lesson.school.stops.active
     assert lesson.drive("Ben", hold=1) is None
     lesson.say(Stop("3", "Cleo"))
     lesson.say(Take("4", "Ann"))
@@ -305,10 +305,10 @@ def test_a_release_that_comes_late_ends_its_own_press_only() -> None:
     assert lesson.school.authority.is_manual(lesson.tick)
     assert lesson.say(Stop("2", "Ann", press_id=2)).accepted
     assert not lesson.school.authority.is_manual(lesson.tick)
-    assert lesson.school.active_stop == ActiveStop(StopReason.LET_GO, "Ann")
+    assert lesson.school.stops.active == ActiveStop(StopReason.LET_GO, "Ann")
     lesson.say(resume())
     assert lesson.say(Stop("2", "Ann", press_id=2)).outcome == Outcome(ResultCode.REPEATED)
-    assert not lesson.school.active_stop
+    assert not lesson.school.stops.active
 
 
 @pytest.mark.parametrize(
@@ -327,7 +327,7 @@ def test_command_from_before_a_stop_does_not_move_the_robot(
     lesson.say(stop("1"))
     refused = lesson.say(late(lesson.tick - 1))
     assert refused.outcome == Outcome(RefusalCode.STOPPED_SINCE)
-    assert lesson.school.active_stop
+    assert lesson.school.stops.active
     assert lesson.say(late(lesson.tick)).accepted
 
 
@@ -353,7 +353,7 @@ def test_pursue_needs_authority_and_keeps_a_stop() -> None:
     assert lesson.small.wanted.behaviour == "straight_on"
     lesson.say(Take("take it", "Ann"))
     assert lesson.say(pursue("turn_left")).accepted
-    assert lesson.school.active_stop == ActiveStop(StopReason.SAID_STOP, "Bob")
+    assert lesson.school.stops.active == ActiveStop(StopReason.SAID_STOP, "Bob")
 
 
 @pytest.mark.parametrize(
@@ -404,7 +404,7 @@ def test_late_copy_of_stop_brakes_without_being_newer() -> None:
     seen = lesson.tick
     lesson.say(stop("1"))
     assert lesson.say(Resume("2", "Ann", seen)).accepted
-    assert not lesson.school.active_stop
+    assert not lesson.school.stops.active
 
 
 def test_copy_of_a_stop_that_ends_a_drive_counts_as_stop() -> None:
@@ -413,7 +413,7 @@ def test_copy_of_a_stop_that_ends_a_drive_counts_as_stop() -> None:
     lesson.say(resume("2"))
     seen = lesson.tick
     lesson.say(stop("1"))
-    assert lesson.school.active_stop
+    assert lesson.school.stops.active
     assert not lesson.say(Resume("3", "Ann", seen)).accepted
 
 

@@ -69,7 +69,7 @@ async def test_twists_drive_the_teachers_robot_until_they_cease(desk: RobotInRos
     ceased = desk.at_work.tick
     await anyio.sleep(2.0)
     assert 0 < desk.moved_after(ceased) <= STOPS_WITHIN
-    assert desk.at_work.runtime.handler.active_stop is not None
+    assert desk.at_work.runtime.handler.stops.active is not None
 
 
 @in_ros
