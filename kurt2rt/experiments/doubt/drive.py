@@ -4,7 +4,6 @@ import random
 import zlib
 from base64 import b64decode, b64encode
 from collections.abc import Callable, Sequence
-from contextlib import closing
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import partial
@@ -16,15 +15,12 @@ from numpy.typing import NDArray
 from pydantic import PlainSerializer, PlainValidator
 
 from config.settings import Settings, SettingsError
-from hal.robot_settings import RobotSettings
-from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Resume
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.episode import Episode
-from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
-from kurt2rt.runtime import Runtime, RuntimeOptions
-from simbridge.contracts.simulation import Simulation, SimulationFactory
+from kurt2rt.runtime import Runtime
+from simbridge.contracts.simulation import Simulation
 
 Scores = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -197,28 +193,6 @@ def with_doubt(task: TaskSettings, response: DoubtResponse) -> TaskSettings:
     return task.model_copy(update={"learning": task.learning.model_copy(update={"doubt": doubt})})
 
 
-async def drive(
-    factory: SimulationFactory,
-    settings: RobotSettings,
-    task: TaskSettings,
-    events: Sequence[TeachingEvent],
-    setup: DoubtSetup,
-    on_progress: Callable[[float], None],
-) -> DriveLog:
-    """Drive in the setup's world with the lessons `events` and return the log.
-
-    `on_progress` gets the simulated seconds once a second. Raises config.settings.SettingsError if task and world do
-    not fit, or the task sets no doubt.
-    """
-    task = with_doubt(task, setup.response)
-    with closing(factory.open(setup.world, setup.seed, "doubt")) as simulation:
-        exam = ExamSetup(setup.world, setup.seed, events=events)
-        runtime = build_exam_runtime(simulation, settings, task, exam, RuntimeOptions())
-        run = DoubtRun(simulation, runtime, setup, on_progress)
-        await run.run(round(setup.duration_s / run.period_s))
-        return run.log()
-
-
 class DoubtRun(Episode):
     """Episode that logs doubt, missed turns and collisions."""
 
@@ -238,10 +212,8 @@ class DoubtRun(Episode):
         self._unanswered = round(setup.set_down_after_s / self.period_s)
         self._asked_ticks = 0
         self._settled_at = 0
-        self._doubt: list[float] = []
-        self._distance: list[float] = []
-        self._driving: list[bool] = []
-        self._missed: list[bool] = []
+        self._ticks: list[tuple[float, float, bool, bool]] = []
+        """Doubt, distance, driving and missed of each tick (DriveLog)."""
         self._collisions: list[int] = []
         self._counted = 0
 
@@ -250,14 +222,13 @@ class DoubtRun(Episode):
         self.measure()
         decision, match = record.decision, record.decision.match
         right = self._policy.choose(record.readings.infrared_counts, record.behaviour)
-        drives_on = decision.action in self._drives_on
-        self._doubt.append(decision.doubt or 0.0)
-        self._distance.append(0.0 if match is None else match.distance / match.radius)
-        self._driving.append(decision.driving and record.tick >= self._settled_at)
-        self._missed.append(drives_on and right not in self._drives_on)
+        missed = decision.action in self._drives_on and right not in self._drives_on
+        distance = 0.0 if match is None else match.distance / match.radius
+        driving = decision.driving and record.tick >= self._settled_at
+        self._ticks.append((decision.doubt or 0.0, distance, driving, missed))
         if self.simulation.collisions > self._counted:
             self._counted = self.simulation.collisions
-            self._collisions.append(len(self._doubt) - 1)
+            self._collisions.append(len(self._ticks) - 1)
             self._seen.append(self._memory is not None and self._memory.remembers_within(_AT_OUTLINE_M))
         if record.guard_result.latched:
             self.simulation.rescue()
@@ -272,12 +243,13 @@ class DoubtRun(Episode):
 
     def log(self) -> DriveLog:
         """Return the log of the ticks so far."""
+        doubt, distance, driving, missed = zip(*self._ticks, strict=True)
         return DriveLog(
             world=self._world,
-            doubt=np.array(self._doubt),
-            distance=np.array(self._distance),
-            driving=np.array(self._driving, dtype=np.bool_),
-            missed=np.array(self._missed, dtype=np.bool_),
+            doubt=np.array(doubt),
+            distance=np.array(distance),
+            driving=np.array(driving, dtype=np.bool_),
+            missed=np.array(missed, dtype=np.bool_),
             collisions=tuple(self._collisions),
             seen=tuple(self._seen),
             travelled_m=self.distance_travelled_m,

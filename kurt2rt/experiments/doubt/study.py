@@ -1,6 +1,7 @@
 """Study of doubt: jobs of one robot in one world, which only tells its doubt, or stands; and their tables."""
 
 from collections.abc import Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, NamedTuple
@@ -8,20 +9,22 @@ from typing import ClassVar, NamedTuple
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.doubt.drive import (
     DoubtResponse,
+    DoubtRun,
     DoubtSetup,
     DriveLog,
-    drive,
     judge_score,
     threshold_for,
     with_doubt,
 )
 from kurt2rt.experiments.lockstep.curriculum import Report
+from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
 from kurt2rt.experiments.study.intervals import rate_of
 from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.study_plan import Group, StudyPlan, read_groups
 from kurt2rt.experiments.study.table import Table, Told, of_text, rate_text, table_of
 from kurt2rt.knowledge.journal.loading import read_lessons
+from kurt2rt.runtime import RuntimeOptions
 
 TICKS_PER_MINUTE = 6000
 
@@ -44,13 +47,13 @@ class DoubtJob(StudyJob):
 
     async def measure(self, knowledge: Path, report: Report) -> DoubtOutcome:  # noqa: ARG002 - nothing is taught
         """Drive in the job's world and return the log."""
-
-        def on_progress(done_s: float) -> None:
-            report(self.name, done_s, self.robot_time_s)
-
-        events = read_lessons(self.taught, self.robot, self.task)
-        log = await drive(self.factory, self.robot, self.task, events, self.setup, on_progress)
-        return DoubtOutcome(made_of=self.made_of, seed=self.seed, log=log)
+        setup, task = self.setup, with_doubt(self.task, self.setup.response)
+        exam = ExamSetup(setup.world, setup.seed, events=read_lessons(self.taught, self.robot, self.task))
+        with closing(self.factory.open(setup.world, setup.seed, "doubt")) as simulation:
+            runtime = build_exam_runtime(simulation, self.robot, task, exam, RuntimeOptions())
+            run = DoubtRun(simulation, runtime, setup, lambda done_s: report(self.name, done_s, self.robot_time_s))
+            await run.run(round(setup.duration_s / run.period_s))
+            return DoubtOutcome(made_of=self.made_of, seed=self.seed, log=run.log())
 
 
 class DoubtDrives(NamedTuple):
