@@ -256,7 +256,7 @@ def summarise_runs(place: str, runs: Sequence[DriveRow]) -> PlaceSummary:
         stuck=share(lambda run: run.stuck),
         asked=asked,
         stopped=share(lambda run: bool(run.alarm)),
-        clean=share(is_clean),
+        clean=share(_is_clean),
         collisions_per_hour=_clustered([each.collisions for each in runs], hours),
         first_questions_per_hour=Rate(asked.events / until_asked, fewest / until_asked, most / until_asked),
         questions_per_hour=_clustered([each.questions for each in runs], hours),
@@ -265,7 +265,7 @@ def summarise_runs(place: str, runs: Sequence[DriveRow]) -> PlaceSummary:
     )
 
 
-def is_clean(run: DriveRow) -> bool:
+def _is_clean(run: DriveRow) -> bool:
     """Return whether a run had no collision, no question and no early end."""
     return not (run.failed or run.questions)
 
@@ -279,7 +279,7 @@ def worst_of(drives: Sequence[DriveRow], count: int) -> list[DriveRow]:
     def badness(run: DriveRow) -> tuple[float, ...]:
         return -run.collisions, not run.ended_early, run.duration_s, run.first_question_s or math.inf, run.seed
 
-    return sorted((each for each in drives if not is_clean(each)), key=badness)[:count]
+    return sorted((each for each in drives if not _is_clean(each)), key=badness)[:count]
 
 
 def _clustered(counts: Sequence[int], hours: Sequence[float]) -> Rate:

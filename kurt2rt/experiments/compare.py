@@ -256,7 +256,7 @@ def _judged_of(row: Row) -> tuple[PupilOutcome, ...]:
     return tuple(each for each in row.rows if each.end.judged)
 
 
-def passed_at(row: Row, place: int) -> int:
+def _passed_at(row: Row, place: int) -> int:
     """Return the number of judged robots that pass at the checkpoint of an index."""
     return sum(each.checkpoints[place].passed for each in _judged_of(row))
 
@@ -294,7 +294,7 @@ def all_tables(rows: Sequence[Row], plan: StudyPlan[Compared]) -> Iterator[Table
 
 def _success_table(rows: Sequence[Row], about: Compared) -> Table:
     def after(heading: str, place: int) -> Column:
-        return heading, lambda row: of_text(passed_at(row, place), len(_judged_of(row)), interval=True)
+        return heading, lambda row: of_text(_passed_at(row, place), len(_judged_of(row)), interval=True)
 
     lasting = ", ".join(f"{task.name} {task.exam.duration_s:.0f} s" for task in about.tasks)
     return table_of(
@@ -316,7 +316,7 @@ def paired_table(rows: Sequence[Row]) -> Table:
     """Return the comparison of each learner with the RLA system, robot by robot, at the end of the lessons."""
     cells: list[tuple[Row, tuple[int, int], float, float, str]] = []
     for _, (shipped, *others) in group_by(rows, lambda row: row.of[0]):
-        pairs = [pairs_of(shipped.rows, row.rows) for row in others]
+        pairs = [_pairs_of(shipped.rows, row.rows) for row in others]
         p_values = [mcnemar_p(*each) for each in pairs]
         saved = [_saving_text(shipped.rows, row.rows) for row in others]
         cells += zip(others, pairs, p_values, holm(p_values), saved, strict=True)
@@ -337,7 +337,7 @@ def paired_table(rows: Sequence[Row]) -> Table:
     )
 
 
-def pairs_of(first: Sequence[PupilOutcome], second: Sequence[PupilOutcome]) -> tuple[int, int]:
+def _pairs_of(first: Sequence[PupilOutcome], second: Sequence[PupilOutcome]) -> tuple[int, int]:
     """Return how many robots pass with the first of two pupils only, and with the second only.
 
     Robots of equal seeds are compared at the end of their lessons; those that are not judged do not count.
@@ -401,7 +401,7 @@ def _draw(axes: Axes, after: tuple[int, ...], row: Row, style: str) -> None:
     end = median(each.lesson.presses for each in row.rows)
     # A median robot that never got so many presses has its point of the end there.
     reached = [presses for presses in after if presses < end]
-    counts = [passed_at(row, place) for place in (*range(len(reached)), len(after))]
+    counts = [_passed_at(row, place) for place in (*range(len(reached)), len(after))]
     at, width = [*reached, end], 2.6 if shipped else 1.3
     axes.plot(at, [n / robots for n in counts], style, marker="o", markersize=4, linewidth=width, label=pupil.title)
     if shipped:

@@ -171,7 +171,7 @@ def tell(plan: StudyPlan[TaskSettings]) -> Told:
     task, outcomes = plan.about, [job.results.read(job, ErrandsOutcome) for job in plan.of(NavigationJob)]
     pictures = [plan.results.folder / f"{task.name}-{outcome.seed}.png" for outcome in outcomes]
     for outcome, path in zip(outcomes, pictures, strict=True):
-        draw_errands(plan.jobs[0].factory, task.exam.worlds[0], outcome, path)
+        _draw_errands(plan.jobs[0].factory, task.exam.worlds[0], outcome, path)
     tables = list(all_tables(outcomes, navigation_settings(task), task.teaching.profile.name))
     return Told(tables, (), {"pictures": plan.results.folder}, (), {"pictures": pictures})
 
@@ -256,7 +256,7 @@ def _mean(values: Iterable[float]) -> float:
     return statistics.fmean(given) if given else float("inf")
 
 
-def draw_errands(factory: SimulationFactory, world: str, outcome: ErrandsOutcome, path: Path) -> None:
+def _draw_errands(factory: SimulationFactory, world: str, outcome: ErrandsOutcome, path: Path) -> None:
     """Draw the tour and the drives of one robot in a world, and write the picture to `path`. Raises OSError."""
     figure = Figure(figsize=(7.2, 8.0), layout="constrained")
     axes = figure.subplots()

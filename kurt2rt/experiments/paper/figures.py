@@ -21,22 +21,15 @@ _MOST_UNSEEN = 1
 _SUCCESS_WORDS = {ExamVerdict.PASSED: "success", ExamVerdict.FAILED: "no success"}
 
 
-def draw_eight(factory: SimulationFactory, drive: DriveRow, path: Path) -> None:
-    """Draw the trail of a drive round the two columns, with its start, as Fig. 7 of the paper does.
-
-    Writes a PNG to `path`. Raises OSError.
-    """
+def _draw_eight(factory: SimulationFactory, drive: DriveRow, path: Path) -> None:
     figure, (axes,) = panels_of(1, 1, (7.0, 6.0))
     draw_drive(axes, factory, drive)
     legend_below(axes, columns=4)
     save(figure, path)
 
 
-def draw_drives(factory: SimulationFactory, drives: Sequence[DriveRow], path: Path) -> None:
-    """Draw a panel for each drive: trail, start, unknown situations and collisions.
-
-    Writes a PNG to `path`. Raises OSError.
-    """
+def _draw_drives(factory: SimulationFactory, drives: Sequence[DriveRow], path: Path) -> None:
+    """Draw a panel for each drive: trail, start, unknown situations and collisions."""
     figure, panels = panels_of(len(drives), 2 if len(drives) == 4 else _COLUMNS, (5.0, 5.4))
     for axes, drive in zip(panels, drives, strict=True):
         draw_drive(axes, factory, drive)
@@ -54,11 +47,8 @@ def _format_drive(drive: DriveRow) -> str:
 _TITLES = {"shipped": "With the shipped settings", "plain": "Plain reading of the paper"}
 
 
-def draw_growth(studies: Sequence[GrowthStudy], paper: PaperResult, path: Path) -> None:
-    """Draw the number of RLAs against time for each R, a panel for each reading (Fig. 2 of the paper).
-
-    Medians are lines, quartiles bands; the point of the paper's text is marked. Writes a PNG. Raises OSError.
-    """
+def _draw_growth(studies: Sequence[GrowthStudy], paper: PaperResult, path: Path) -> None:
+    """Draw the number of RLAs against time for each R, a panel for each reading, with the point of the paper's text."""
     figure = Figure(figsize=(5.6 * len(studies), 4.8), layout="constrained")
     panels = figure.subplots(1, len(studies), squeeze=False, sharey=True)[0]
     for axes, study in zip(panels, studies, strict=True):
@@ -83,11 +73,7 @@ def draw_growth(studies: Sequence[GrowthStudy], paper: PaperResult, path: Path) 
     save(figure, path)
 
 
-def draw_testing_ground(factory: SimulationFactory, world: str, path: Path) -> None:
-    """Draw the world of the training from above, with the robot (Fig. 4 of the paper).
-
-    Writes a PNG to `path`. Raises OSError.
-    """
+def _draw_testing_ground(factory: SimulationFactory, world: str, path: Path) -> None:
     figure = Figure(figsize=(5.6, 6.0), layout="constrained")
     axes = figure.subplots()
     factory.draw(axes, world)
@@ -95,8 +81,7 @@ def draw_testing_ground(factory: SimulationFactory, world: str, path: Path) -> N
     save(figure, path)
 
 
-def draw_worlds(factory: SimulationFactory, worlds: Sequence[str], path: Path) -> None:
-    """Draw all worlds from above, two in a row (Fig. 6 of the paper). Writes a PNG to `path`. Raises OSError."""
+def _draw_worlds(factory: SimulationFactory, worlds: Sequence[str], path: Path) -> None:
     figure, panels = panels_of(len(worlds), 2, (5.0, 5.0))
     for axes, world in zip(panels, worlds, strict=True):
         factory.draw(axes, world)
@@ -114,7 +99,7 @@ def draw_figures(study: PaperStudy, factory: SimulationFactory, folder: Path) ->
     if study.growth:
         path = folder / "fig2.png"
         task = next(each.of.task for each in study.experiments if each.of.task.name == study.growth[0].task)
-        draw_growth(study.growth, task.paper, path)
+        _draw_growth(study.growth, task.paper, path)
         robots = max(map(len, study.growth[0].curves.values()))
         yield SavedFigure(
             path,
@@ -123,18 +108,18 @@ def draw_figures(study: PaperStudy, factory: SimulationFactory, folder: Path) ->
             "star is the only number in the paper's text, for both phases; the paper does not tell its R.",
         )
     path = folder / "fig4.png"
-    draw_testing_ground(factory, paper.testing_ground, path)
+    _draw_testing_ground(factory, paper.testing_ground, path)
     ground = f"World {label_of(paper.testing_ground)}, the testing ground, with the robot at a start pose, to scale."
     yield SavedFigure(path, "Fig. 4: the testing environment", ground)
     path = folder / "fig6.png"
-    draw_worlds(factory, paper.worlds, path)
+    _draw_worlds(factory, paper.worlds, path)
     yield SavedFigure(path, "Fig. 6: the test worlds", "World A is the one that is taught in.")
     for each in shipped:
         robot = each.rows[0]
         drive = robot.drives[0]
         if each.of.settings.task == paper.eight:
             path = folder / "fig7.png"
-            draw_eight(factory, drive, path)
+            _draw_eight(factory, drive, path)
             yield SavedFigure(
                 path,
                 "Fig. 7: the eight round two columns",
@@ -147,7 +132,7 @@ def draw_figures(study: PaperStudy, factory: SimulationFactory, folder: Path) ->
         path = folder / f"drive-{each.of.task.name}.png"
         own = [drive for drive in robot.drives if drive.world in each.of.task.exam.worlds]
         others = [drive for drive in robot.drives if drive not in own]
-        draw_drives(factory, [*own, *others[:_MOST_UNSEEN]], path)
+        _draw_drives(factory, [*own, *others[:_MOST_UNSEEN]], path)
         yield SavedFigure(
             path,
             each.of.settings.title,

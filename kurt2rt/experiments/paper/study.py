@@ -113,7 +113,7 @@ def make_plan(
             )
             robots.append(job)
         for radius in paper.growth.radii if each.task == paper.growth.task else ():
-            own = with_radius_only(task, radius, paper.growth.duration_s)
+            own = _with_radius_only(task, radius, paper.growth.duration_s)
             made = fingerprints.of(own, (own.teaching.world,))
             curves += (
                 GrowthJob(
@@ -137,7 +137,7 @@ def unseen_of(seed: int, experiment: ExperimentSettings) -> tuple[str, ...]:
     return experiment.unseen.names[seed % ROBOTS :: ROBOTS] if experiment.unseen else ()
 
 
-def with_radius_only(task: TaskSettings, radius: float, duration_s: float) -> TaskSettings:
+def _with_radius_only(task: TaskSettings, radius: float, duration_s: float) -> TaskSettings:
     """Return the task with this radius in counts, taught in phase 1 only for `duration_s`."""
     learning = task.learning.model_copy(update={"radius": radius})
     teaching = task.teaching.model_copy(update={"supervised_s": duration_s, "corrections_s": 0.0})

@@ -48,7 +48,7 @@ def draw_figures(routes: Sequence[Routes], factory: SimulationFactory, folder: P
     """Draw each length into the folder and yield it: route-<decisions>.png. Raises OSError."""
     for decisions, outcomes in routes:
         path = folder / f"route-{decisions}.png"
-        draw_routes(factory, outcomes, path)
+        _draw_routes(factory, outcomes, path)
         yield SavedFigure(
             path,
             f"Routes of {decisions} decisions",
@@ -70,7 +70,7 @@ def draw_route(factory: SimulationFactory, outcome: RouteOutcome, path: Path) ->
     save(figure, path)
 
 
-def draw_routes(factory: SimulationFactory, outcomes: Sequence[RouteOutcome], path: Path) -> None:
+def _draw_routes(factory: SimulationFactory, outcomes: Sequence[RouteOutcome], path: Path) -> None:
     """Draw a panel for each robot: route, decisions and drive. Writes a PNG to `path`. Raises OSError."""
     figure, panels = panels_of(len(outcomes), _COLUMNS, (4.0, 4.4))
     for axes, outcome in zip(panels, outcomes, strict=True):
@@ -134,7 +134,7 @@ _LAYERS = (
 )
 
 
-def right_of(routes: Routes) -> Rate:
+def _right_of(routes: Routes) -> Rate:
     """Return the share of the decisions that were right, with its interval; 0 without decisions."""
     return right_rate([each.drive for each in routes.rows]) or Rate(0.0, 0.0, 1.0)
 
@@ -149,7 +149,7 @@ def verdicts(routes: Routes, paper: PaperResult) -> Iterator[Verdict]:
     yield Verdict("mid-level RLAs, most", f"at most {paper.rlas}", str(most), most <= paper.rlas)
     longest_s = max(each.lesson.teaching_s for each in outcomes)
     yield Verdict("teaching", f"at most {paper.teaching_s:g} s", f"{longest_s:g} s", longest_s <= paper.teaching_s)
-    right, junctions = right_of(routes).value, sum(each.drive.junctions for each in outcomes)
+    right, junctions = _right_of(routes).value, sum(each.drive.junctions for each in outcomes)
     yield Verdict("decisions right", f"at least {RIGHT:.0%}", f"{right:.2%} of {junctions}", right >= RIGHT)
     needed, without = needed_of(share, len(outcomes)), sum(each.drive.passed for each in outcomes)
     asked, came = f"at least {of_text(needed, len(outcomes))}", of_text(without, len(outcomes))
@@ -207,7 +207,7 @@ def _exam_table(routes: Sequence[Routes], task: TaskSettings) -> Table:
         return lambda each: sum(wrong.layer == layer for robot in each.rows for wrong in robot.wrong)
 
     def right(each: Routes) -> str:
-        return f"{right_of(each).value:.2%} of {sum(robot.drive.junctions for robot in each.rows)}"
+        return f"{_right_of(each).value:.2%} of {sum(robot.drive.junctions for robot in each.rows)}"
 
     return table_of(
         "Drives without a teacher",
@@ -216,7 +216,7 @@ def _exam_table(routes: Sequence[Routes], task: TaskSettings) -> Table:
         share("without an error", "drive.passed"),
         ("95 %", lambda each: share_text(sum(robot.drive.passed for robot in each.rows), len(each.rows))),
         ("decisions right", right),
-        ("95 %", lambda each: to_text(right_of(each)[1:], ".1%")),
+        ("95 %", lambda each: to_text(_right_of(each)[1:], ".1%")),
         *((layer, failed(layer)) for layer in LAYERS),
         total("collisions", "drive.collisions"),
         total("stuck", "drive.ended_early"),

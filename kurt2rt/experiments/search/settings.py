@@ -152,7 +152,7 @@ def _step(place: Any, level: str, key: str) -> Any:
     raise SettingsError(f"{key}: no such key (got {level}, allowed {allowed})", where="space")
 
 
-def changes_of_values(content: Mapping[str, Any], values: Values) -> dict[str, Any]:
+def _changes_of_values(content: Mapping[str, Any], values: Values) -> dict[str, Any]:
     """Return what to change in the task's file, by dotted key; a list that a key leads through is whole.
 
     Raises SettingsError if a key leads nowhere.
@@ -199,7 +199,7 @@ class TaskSpace:
 
     def changes(self, values: Values) -> dict[str, Any]:
         """Return what a trial changes in the task's file, by dotted key."""
-        return changes_of_values(self._content, values)
+        return _changes_of_values(self._content, values)
 
     def task(self, values: Values) -> TaskSettings:
         """Return the task of a trial, with its teacher. Raises SettingsError if the values do not fit together."""

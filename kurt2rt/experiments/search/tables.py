@@ -89,7 +89,7 @@ def _difference(difference: Rate, factor: float = 1.0) -> str:
     return rate_text(Rate(*(factor * each for each in difference)), "+.1f")
 
 
-def draw_trials(plan: SearchPlan, trials: list[FrozenTrial], path: Path) -> SavedFigure:
+def _draw_trials(plan: SearchPlan, trials: list[FrozenTrial], path: Path) -> SavedFigure:
     """Draw the scores by number and by each key as a PNG to `path`. Raises OSError."""
     panels = 1 + len(plan.search.space)
     rows = -(-panels // _COLUMNS)
@@ -182,7 +182,7 @@ def tell(plan: SearchPlan, found: SearchTrials, check: CheckResult, command: str
     `command`: typed words, without those that belong to the machine alone.
     """
     tables = [_trials_table(plan, found, check.record.trials), _check_table(plan, check)]
-    figure = draw_trials(plan, found.all[: check.record.trials], plan.folder / "trials.png")
+    figure = _draw_trials(plan, found.all[: check.record.trials], plan.folder / "trials.png")
     files = {"found": plan.folder / "found.yaml", "report": plan.folder / "report.html"}
     write_found(plan, check, command, files["found"])
     search = plan.search

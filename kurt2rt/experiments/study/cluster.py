@@ -81,8 +81,7 @@ def scheduler_command(file: Path, address: str) -> str:
     )
 
 
-def no_scheduler(file: Path, address: str) -> ClusterError:
-    """Return the error of a cluster whose scheduler does not answer."""
+def _no_scheduler(file: Path, address: str) -> ClusterError:
     do = f"start one there: {scheduler_command(file, address)}"
     return ClusterError("no scheduler of this cluster answers", where=address, do=do)
 
@@ -116,7 +115,7 @@ def open_cluster(file: Path) -> Iterator["ClusterExecutor"]:
     try:
         client = Client(address, timeout=_TIMEOUT_S, security=security)
     except (OSError, TimeoutError) as error:
-        raise no_scheduler(file, address) from error
+        raise _no_scheduler(file, address) from error
     with client:
         yield ClusterExecutor(client)
 
@@ -242,4 +241,4 @@ async def serve(file: Path, on_ready: Callable[[str], None]) -> None:
             finally:  # closing breaks off a heartbeat, which Dask logs as an error with a traceback
                 logging.getLogger("distributed.worker").setLevel(logging.CRITICAL)
     except (OSError, TimeoutError) as error:
-        raise no_scheduler(file, address) from error
+        raise _no_scheduler(file, address) from error
