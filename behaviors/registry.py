@@ -14,27 +14,20 @@ from config.plugins import PluginKind
 from config.settings import SettingsError
 from config.settings_by_kind import KindSettings, as_its_kind, is_settings_class, shipped_kinds
 
-POLICIES = PluginKind(
-    "policies",
-    "policy",
-    "a subclass of PolicySettings (behaviors.policies.policy)",
-    lambda found: is_settings_class(found, PolicySettings),
-    lambda: shipped_kinds("behaviors.policies", PolicySettings),
-)
-JUDGES = PluginKind(
-    "judges",
-    "judge",
-    "a subclass of JudgeSettings (behaviors.judges.judge)",
-    lambda found: is_settings_class(found, JudgeSettings),
-    lambda: shipped_kinds("behaviors.judges", JudgeSettings),
-)
-METRICS = PluginKind(
-    "metrics",
-    "metric",
-    "a subclass of MetricSettings (behaviors.metrics.task_metric)",
-    lambda found: is_settings_class(found, MetricSettings),
-    lambda: shipped_kinds("behaviors.metrics", MetricSettings),
-)
+
+def _plugin_kind(folder: str, what: str, base: type[KindSettings]) -> PluginKind:
+    return PluginKind(
+        folder,
+        what,
+        f"a subclass of {base.__name__} ({base.__module__})",
+        lambda found: is_settings_class(found, base),
+        lambda: shipped_kinds(f"behaviors.{folder}", base),
+    )
+
+
+POLICIES = _plugin_kind("policies", "policy", PolicySettings)
+JUDGES = _plugin_kind("judges", "judge", JudgeSettings)
+METRICS = _plugin_kind("metrics", "metric", MetricSettings)
 
 
 class _Absent(KindSettings):

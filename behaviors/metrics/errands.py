@@ -5,11 +5,10 @@ from typing import Annotated
 
 from pydantic import Field
 
-from behaviors.metrics.junctions import QUARTERS
+from behaviors.metrics.junctions import QUARTERS, require_streets
 from behaviors.metrics.streets import StreetMap
 from behaviors.metrics.task_metric import JUNCTIONS, Metrics, MetricSettings, TaskMetric
 from behaviors.metrics.town import Street, Town
-from config.settings import SettingsError
 from simbridge.contracts.simulation import Pose, Simulation, WorldPlan
 
 
@@ -28,12 +27,7 @@ class ErrandsSettings(MetricSettings):
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
         """Raise config.settings.SettingsError without junctions, or for behaviours that choose no exit."""
-        if not set(behaviours) <= set(QUARTERS):
-            raise SettingsError(f"metric errands: the task's behaviours must be among {', '.join(QUARTERS)}")
-        if not plan.junctions:
-            raise SettingsError(
-                f"metric errands: world {plan.name} has no streets that meet", do="choose one with streets"
-            )
+        require_streets("errands", plan, behaviours)
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """Return the metric in a simulation. `chance` is not used.

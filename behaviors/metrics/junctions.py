@@ -21,17 +21,22 @@ _MEASURE_LOOKS = MEASURE_EVERY // _LOOK_EVERY
 _LEFT_BEHIND_M = 0.1
 
 
+def require_streets(metric: str, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
+    """Raise config.settings.SettingsError without junctions, or for behaviours that choose no exit."""
+    if not set(behaviours) <= set(QUARTERS):
+        raise SettingsError(f"metric {metric}: the task's behaviours must be among {', '.join(QUARTERS)}")
+    if not plan.junctions:
+        raise SettingsError(
+            f"metric {metric}: world {plan.name} has no streets that meet", do="choose one with streets"
+        )
+
+
 class JunctionsSettings(MetricSettings):
     """Settings of the metric `junctions`: junctions left through the required side."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
         """Raise config.settings.SettingsError without junctions, or for behaviours that choose no exit."""
-        if not set(behaviours) <= set(QUARTERS):
-            raise SettingsError(f"metric junctions: the task's behaviours must be among {', '.join(QUARTERS)}")
-        if not plan.junctions:
-            raise SettingsError(
-                f"metric junctions: world {plan.name} has no streets that meet", do="choose one with streets"
-            )
+        require_streets("junctions", plan, behaviours)
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:
         """Return the metric in a simulation, which draws the required behaviours by `chance`.

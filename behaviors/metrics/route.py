@@ -9,7 +9,7 @@ from typing import Annotated
 from pydantic import Field
 
 from behaviors.metrics.angle_about import MEASURE_EVERY, Mean
-from behaviors.metrics.junctions import QUARTERS
+from behaviors.metrics.junctions import QUARTERS, require_streets
 from behaviors.metrics.routes import Leg, Route, random_route
 from behaviors.metrics.streets import Junction, StreetMap
 from behaviors.metrics.task_metric import (
@@ -21,7 +21,6 @@ from behaviors.metrics.task_metric import (
     TaskMetric,
     WayAhead,
 )
-from config.settings import SettingsError
 from simbridge.contracts.simulation import Pose, Simulation, WorldPlan
 
 _LOOK_EVERY = 5
@@ -41,12 +40,7 @@ class RouteSettings(MetricSettings):
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
         """Raise config.settings.SettingsError without such a loop, or for behaviours that choose no exit."""
-        if not set(behaviours) <= set(QUARTERS):
-            raise SettingsError(f"metric route: the task's behaviours must be among {', '.join(QUARTERS)}")
-        if not plan.junctions:
-            raise SettingsError(
-                f"metric route: world {plan.name} has no streets that meet", do="choose one with streets"
-            )
+        require_streets("route", plan, behaviours)
         self.route_in(plan, behaviours)
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002

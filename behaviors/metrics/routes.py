@@ -4,7 +4,7 @@ import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from behaviors.metrics.streets import ALONG, Junction, Side, StreetMap
+from behaviors.metrics.streets import Junction, Side, StreetMap
 from config.settings import SettingsError
 from simbridge.contracts.simulation import Pose
 
@@ -114,7 +114,7 @@ def _steps(streets: StreetMap) -> Iterator[_Step]:
     """Yield every street between two junctions, in both directions."""
     for behind in streets.junctions:
         for way in behind.arms:
-            junction = _neighbour(streets, behind, way)
+            junction = streets.neighbour(behind, way)
             if junction is not None:
                 yield way, junction
 
@@ -123,18 +123,9 @@ def _steps_on(streets: StreetMap, step: _Step, allowed: set[int]) -> Iterator[_S
     way, junction = step
     for turn in sorted(allowed):
         leaves = way.turned(turn)
-        following = _neighbour(streets, junction, leaves) if leaves in junction.arms else None
+        following = streets.neighbour(junction, leaves) if leaves in junction.arms else None
         if following is not None:
             yield leaves, following
-
-
-def _neighbour(streets: StreetMap, junction: Junction, way: Side) -> Junction | None:
-    along_x, along_y = ALONG[way]
-    # From its edge, for its own middle must not be found.
-    edge = Pose(
-        junction.x_m + along_x * junction.half_width_m, junction.y_m + along_y * junction.half_height_m, way.heading_rad
-    )
-    return streets.next_junction(edge, way)
 
 
 def _order(step: _Step) -> tuple[float, float, int]:

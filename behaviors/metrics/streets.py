@@ -156,6 +156,12 @@ class StreetMap:
         ]
         return min(ahead, key=lambda pair: pair[0])[1] if ahead else None
 
+    def neighbour(self, junction: Junction, way: Side) -> Junction | None:
+        """Return the next junction in the direction `way` along the street that leaves a junction; None without one."""
+        along_x, along_y = ALONG[way]
+        x_m, y_m = junction.x_m + along_x * junction.half_width_m, junction.y_m + along_y * junction.half_height_m
+        return self.next_junction(Pose(x_m, y_m, way.heading_rad), way)  # from its edge, to miss its own middle
+
     def _junction(self, x_m: float, y_m: float) -> Junction:
         arms: set[Side] = set()
         widths_m: list[float] = []

@@ -4,14 +4,10 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
-from behaviors.metrics.streets import ALONG, Junction, Side, StreetMap, side_towards
+from behaviors.metrics.streets import Junction, Side, StreetMap, side_towards
 from hal.numerics import cos_sin
 from simbridge.contracts.simulation import Pose
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,13 +85,7 @@ class Town:
         found = []
         for behind in self._map.junctions:
             for way in sorted(behind.arms):
-                along_x, along_y = ALONG[way]
-                edge = Pose(
-                    behind.x_m + along_x * behind.half_width_m,
-                    behind.y_m + along_y * behind.half_height_m,
-                    way.heading_rad,
-                )
-                ahead = self._map.next_junction(edge, way)
+                ahead = self._map.neighbour(behind, way)
                 if ahead is not None:
                     found.append(Street(way, behind, ahead))
         return found
