@@ -84,6 +84,9 @@ def unknown_name(kind: str, name: str) -> str:
     return str(refused.value)
 
 
+_OLD_PICTURE = "what you saw of the robot was old"
+
+
 class Running:
     """A `kurt2rt ...` that runs as a process of its own."""
 
@@ -91,14 +94,21 @@ class Running:
         self.process = process
         self._seen: list[str] = []
 
-    def wait_for(self, text: str) -> str:
-        """Read on until a line holds the text; returns that line."""
+    def wait_for(self, *texts: str) -> str:
+        """Read on until a line holds one of the texts; returns that line."""
         assert self.process.stdout is not None
         for line in self.process.stdout:
             self._seen.append(line)
-            if text in line:
+            if any(text in line for text in texts):
                 return line
-        raise AssertionError(f"{text!r} was never said: {''.join(self._seen)} {self.process.communicate()[1]}")
+        raise AssertionError(f"{texts} was never said: {''.join(self._seen)} {self.process.communicate()[1]}")
+
+    def ask(self, line: str, answer: str) -> None:
+        """Type a line until it is answered so: on a busy machine a picture is at times too old to move the robot."""
+        said = ""
+        while answer not in said:
+            self.type(line)
+            said = self.wait_for(answer, _OLD_PICTURE)
 
     def type(self, line: str) -> None:
         """Type a line at its keyboard."""

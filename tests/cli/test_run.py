@@ -40,7 +40,7 @@ class Lesson(NamedTuple):
 @contextmanager
 def lesson(folder: Path) -> Iterator[Lesson]:
     """Start a robot and a terminal that teaches it."""
-    with running("run", "--seconds", "120", "--port", "0", "--knowledge", "mine.knowledge", folder=folder) as robot:
+    with running("run", "--port", "0", "--knowledge", "mine.knowledge", folder=folder) as robot:
         port = robot.wait_for("teachers are listened to on UDP port").split()[-1]
         with running("teach", "--terminal", "--port", port, folder=folder) as person:
             person.wait_for("terminal teaches")
@@ -65,8 +65,7 @@ def test_a_terminal_does_what_a_page_does(tmp_path: Path) -> None:
             ("dance", "not done, dance: no such command or action"),
             ("end", "session 'monday' is over"),
         ):
-            person.type(line)
-            person.wait_for(answer)
+            person.ask(line, answer)
         person.type("quit")
         person.wait_for("the robot has no teacher now")
         assert person.process.wait() == 0
