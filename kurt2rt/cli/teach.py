@@ -15,7 +15,6 @@ from rich.console import Console
 from hal.robot_settings import load_robot, robot_that_task_names
 from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, TERMINAL, Device, local_pairing, read_device
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.cli.options import (
     DEFAULT_TEACHER,
     PageAddressName,
@@ -31,7 +30,7 @@ from kurt2rt.cli.teach_shutdown import until_teaching_ends
 from kurt2rt.core.rla.rla import AUTO, PROGRAMS
 from kurt2rt.core.task_settings import load_task, taught_by_named
 from kurt2rt.service.settings import ServiceSettings, load_service
-from kurt2rt.teacher.client.answer import NoAnswerError
+from kurt2rt.teacher.client.answer import NoAnswerError, no_robot
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.scripted.channel_teacher import teach_by_script
 from kurt2rt.teacher.terminal.terminal import TerminalTeacher

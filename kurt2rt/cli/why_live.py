@@ -8,12 +8,11 @@ import anyio
 from config.settings import SettingsError
 from hal.robot_settings import RobotSettings
 from kurt2rt.channel.security.pairing import Device
-from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import installed_task, load_task
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, sensor_counterfactuals
 from kurt2rt.runs.explain.facts import DecisionFacts
-from kurt2rt.teacher.client.answer import NoAnswerError
+from kurt2rt.teacher.client.answer import NoAnswerError, no_robot
 from kurt2rt.teacher.client.observer_client import ANSWER_WITHIN_S, ObserverClient
 
 _FIRST_TICK_S = 0.1

@@ -8,9 +8,8 @@ import pytest
 
 from hal.robot_settings import load_robot
 from kurt2rt.channel.security.pairing import ONLOOKER, local_pairing
-from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.cli.why_live import ask_why
-from kurt2rt.teacher.client.answer import NoAnswer, NoAnswerError
+from kurt2rt.teacher.client.answer import NoAnswer, NoAnswerError, no_robot
 from tests.cli.helpers import CommandLine, running
 from tests.runs.replay.stored_runs import STORED
 from tests.runs.replay.stories import slim

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.core.rla.rla import AUTO
 from kurt2rt.teacher import TeacherClient
+from kurt2rt.teacher.client.answer import no_robot
 from tests.cli.helpers import CommandLine, running
 from tests.teacher.page.test_teach_command import free_udp_port
 

@@ -149,3 +149,10 @@ def answer_of(code: str, body: Mapping[str, Any]) -> Answer:
         extra={key: value for key, value in body.items() if key not in _OWN_KEYS},
         outcome=_outcome_in(body),
     )
+
+
+def no_robot(host: str, port: int, name: str) -> NoAnswerError:
+    """Return the error for a robot expected at `host` and `port`; `name` is the device that asked."""
+    return NoAnswerError(
+        f"at {host}:{port} as {name}", NoAnswer.NO_ROBOT, do="start one in another terminal: kurt2rt run"
+    )
