@@ -77,4 +77,5 @@ def test_report_lists_all_settings(tiny: Tiny) -> None:
     assert html.escape(SUCCESS_NOTE, quote=False).replace("'", "&#39;") in tiny.text
     for title in ("Settings of learning and of the scripted teacher", "Settings of the exams"):
         assert f"<caption>{title}</caption>" in tiny.text
-    assert "every 20 s" in tiny.text
+    for setting in ("every 30 s", "after 15 s within 1 m", "1.5: s15; 2: maximum front; 0: minimum front"):
+        assert setting in tiny.text
