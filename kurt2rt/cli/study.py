@@ -38,11 +38,9 @@ from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_robot import load_task_and_robot, require_robot_of
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.doubt.drive import DoubtResponse
-from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
 from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.study.table import Told
 from kurt2rt.knowledge.files.task_of_file import task_of_file
-from simbridge.contracts.batch import BatchRefusedError
 
 # Studies are imported in their commands: simulator and drawing are extras, and all commands are loaded for --help.
 
@@ -408,18 +406,6 @@ class _Certify(JobOptions):
             )
         return task, load_robot_of(self.robot_settings, self.task or task_of_file(self.knowledge))
 
-    def engine_for(self, task: TaskSettings, robot: RobotSettings) -> Engine:
-        """Return the engine that drives the runs, and say why if it is slow."""
-        if self.engine is Engine.CAN:
-            return Engine.CAN
-        try:
-            require_known_exams(robot, task, policy=False)
-        except BatchRefusedError as refusal:
-            typer.echo(f"{refusal}: all runs are driven there, some 100 times slower", err=True)
-            return Engine.CAN
-        say_if_interpreted()
-        return Engine.COMPILED
-
     @property
     def words(self) -> list[str]:
         """Words by which `kurt2rt exam` drives a run again, besides its seed and world."""
@@ -452,13 +438,14 @@ def certify(options: _Certify) -> None:
     from kurt2rt.experiments.certify import Extent, make_plan, picture_jobs, read_drives, tell, worst_of
 
     task, robot = options.load()
-    engine = options.engine_for(task, robot)
+    if options.engine is Engine.COMPILED:
+        say_if_interpreted()
     generated = ("rooms-SEED",) if task.name == "wall_following" else ()
     places = tuple(dict.fromkeys(options.world or (*task.exam.worlds, *generated)))
-    extent = Extent(options.first, options.runs, places, engine, options.dead_sensors)
+    extent = Extent(options.first, options.runs, places, options.engine, options.dead_sensors)
     plan = make_plan(task, options.knowledge, extent, job_parts(robot, options.out))
-    # On the CAN bus the jobs are other ones.
-    stated_engine = engine if engine is Engine.CAN else None
+    engine = plan.about.extent.engine
+    stated_engine = engine if engine is Engine.CAN else None  # the jobs are other ones there
     stated = {"runs": options.runs, "first": options.first, "engine": stated_engine, "pictures": None}
     command = typed_command("study certify", options, stated)
 

@@ -10,6 +10,7 @@ from typing import ClassVar, NamedTuple
 
 from config.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
 from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
 from kurt2rt.experiments.lockstep.drive_row import PLACES, DriveRow, label_of
 from kurt2rt.experiments.lockstep.engine import ON_BUS, BatchDiffersError, Engine, Engines, choose_witnesses
@@ -25,6 +26,7 @@ from kurt2rt.experiments.study.report import Section, write_report
 from kurt2rt.experiments.study.study_plan import BusWitnessJob, StudyPlan
 from kurt2rt.experiments.study.table import Column, Table, Told, collisions_text, rate_text, table_of, to_text
 from kurt2rt.knowledge.journal.loading import read_lessons
+from simbridge.contracts.batch import BatchRefusedError
 
 BATCH_GAIN = 100.0
 """A run in the batch counts as so many times less robot time in the progress than one on the CAN bus."""
@@ -122,12 +124,21 @@ class Certified(NamedTuple):
 def make_plan(task: TaskSettings, knowledge: Path, extent: Extent, parts: JobParts) -> StudyPlan[Certified]:
     """Check knowledge, task and worlds, and return the jobs; a witness that differs refuses all of them.
 
+    A task that the batch does not know is driven on the CAN bus.
+
     Raises KnowledgeError, and config.settings.SettingsError if the knowledge holds no lesson, or task and worlds do not
     fit.
     """
     lessons = read_lessons(knowledge, parts["robot"], task)
     if not lessons:
         raise SettingsError("holds no lesson", where=knowledge, do="teach the robot first")
+    refusals: tuple[str, ...] = ()
+    if extent.engine is Engine.COMPILED:
+        try:
+            require_known_exams(parts["robot"], task, policy=False)
+        except BatchRefusedError as refusal:
+            extent = extent._replace(engine=Engine.CAN)
+            refusals = (f"{refusal}: all runs are driven there, some 100 times slower",)
     runs = draw_runs(extent, parts["robot"].infrared.names)
     require_places(parts["factory"], task, [world_of(place, extent.first) for place in extent.places])
     fingerprints = Fingerprints(parts["factory"], parts["robot"])
@@ -157,7 +168,7 @@ def make_plan(task: TaskSettings, knowledge: Path, extent: Extent, parts: JobPar
     chosen = choose_witnesses(in_batch, f"{len(runs)} runs from {extent.first}")
     witnesses = tuple(BusWitnessJob.witness_of(replace(block((run,), Engine.COMPILED), wave=0)) for run in chosen)
     numbers = tuple(run.number for run in runs)
-    return StudyPlan(Certified(task, knowledge, extent, runs), numbers, (*blocks, *alone), witnesses)
+    return StudyPlan(Certified(task, knowledge, extent, runs), numbers, (*blocks, *alone), witnesses, refusals)
 
 
 def read_drives(plan: StudyPlan[Certified]) -> tuple[DriveRow, ...]:
