@@ -61,16 +61,6 @@ class Drive:
             self.runtime.timer.end()
         return record
 
-    def blame_until_it_sinks(self) -> None:
-        """Punish the RLA in each tick until its action is withdrawn; that tick is the newest one."""
-        number = 0
-        while not any(isinstance(event, ActionWithdrawn) for event in self.notebook.events):
-            number += 1
-            record = self.run(ticks=200)
-            assert record.decision.driving
-            result = self.run(Reward(f"r-{number}", "Ann", -1, record.tick)).results[0]
-            assert result.accepted, result.outcome
-
 
 @pytest.fixture
 def driving() -> Drive:

@@ -35,10 +35,6 @@ class Border:
             self.asked += [record.tick] * record.question_begins
         return record
 
-    def asks_anew(self) -> bool:
-        before = len(self.asked)
-        return self.run(BORDER + 20).standing == ASKS and len(self.asked) > before
-
 
 @pytest.fixture
 def border() -> Border:
