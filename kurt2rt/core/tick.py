@@ -191,7 +191,7 @@ class Tick:
         events: list[TeachingEvent] = []
         for command in commands:
             if isinstance(command, Stream):
-                self._handler.streams.handle(command, tick)
+                self._handler.control.follow(command, tick)
             elif isinstance(command, PairingRenewed | SpeedChanged | RobotRepositioned):
                 self._apply_system_event(command)
             else:

@@ -74,7 +74,7 @@ def test_hold_without_messages_ends_after_its_lease(driving: Corridor) -> None:
     driving.run(100, hold(driving))
     causes = [driving.run(100).decision.cause for _ in range(LEASE)]
     assert causes == [DecisionCause.TEACHER] * (LEASE - 1) + [DecisionCause.RLA]
-    refused = driving.school.streams.handle(hold(driving), driving.ticks)
+    refused = driving.school.control.follow(hold(driving), driving.ticks)
     assert refused == Outcome(RefusalCode.PRESS_OVER)
 
 
@@ -85,7 +85,7 @@ def test_absent_teacher_of_a_hold_leaves_a_stopped_robot() -> None:
     causes = [corridor.run(100).decision.cause for _ in range(LEASE)]
     assert causes == [DecisionCause.TEACHER] * (LEASE - 1) + [DecisionCause.STOPPED]
     corridor.run(100, Watch("Ann", corridor.ticks))
-    refused = corridor.school.streams.handle(hold(corridor, press=8), corridor.ticks)
+    refused = corridor.school.control.follow(hold(corridor, press=8), corridor.ticks)
     assert refused == Outcome(RefusalCode.ROBOT_STOPPED)
 
 
@@ -121,7 +121,7 @@ def test_manual_drive_after_a_hold_stops_on_release(driving: Corridor) -> None:
 
 
 def test_hold_of_an_unknown_action_is_refused(driving: Corridor) -> None:
-    refused = driving.school.streams.handle(hold(driving, "fly"), driving.ticks)
+    refused = driving.school.control.follow(hold(driving, "fly"), driving.ticks)
     assert refused == Outcome.of(RefusalCode.NO_ACTION, action="fly", known=("forward", "back"))
     assert driving.run(100).decision.cause is DecisionCause.RLA
 

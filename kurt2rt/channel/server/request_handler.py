@@ -137,7 +137,7 @@ class RequestHandler:
         held = commands.authority.refusal_for(device)
         if held is not None:
             return refusal("held", held, tick)
-        ended = commands.streams.press_refusal(command)
+        ended = commands.control.press_refusal(command)
         if ended is not None:
             return refusal("refused" if ended.code is RefusalCode.NO_ACTION else "stopped", ended, tick)
         return Reply(ReplyStatus.DONE, {"t": tick}) if self._enqueue(command) else self._too_many()

@@ -56,7 +56,6 @@ from kurt2rt.core.teaching.lesson_result import LessonResult
 from kurt2rt.core.teaching.message_fields import SLOWEST_PERCENT
 from kurt2rt.core.teaching.rewind_history import CHUNK_TICKS, RewindHistory
 from kurt2rt.core.teaching.stop_record import StopRecord
-from kurt2rt.core.teaching.stream_handler import StreamHandler
 
 _Answer = tuple[CommandResult, tuple[TeachingEvent, ...]]
 _TAUGHT_PHASES = (Phase.SUPERVISED, Phase.CORRECTIONS)
@@ -107,8 +106,7 @@ class CommandHandler:
         self.holds = HoldLessons(self._lessons, level.system, self.recent, self.delay)
         self.demonstration = Demonstration(self._lessons, level.system, authority.repertoire, self.recent)
         self.stops = StopRecord()
-        self.streams = StreamHandler(level.repertoire, authority, self.stops, self.holds, self.delay)
-        self._control = ControlCommands(level.repertoire, authority, self.stops, self.streams)
+        self.control = ControlCommands(level.repertoire, authority, self.stops, self.holds, self.delay)
         self._late = LatePresses(self.recent, self.delay)
         self.updater = KnowledgeUpdater(level, handled_command_ids, parts)
         self.phase = Phase.SUPERVISED
@@ -122,7 +120,7 @@ class CommandHandler:
 
     def stop(self, stop: ActiveStop, by: str | None = None) -> None:
         """Stand until `Resume`; `by`: teacher who stopped the robot and may still drive it by hand."""
-        self._control.stop(stop, by)
+        self.control.stop(stop, by)
 
     @property
     def active_rlas(self) -> tuple[Rla, ...]:
@@ -202,7 +200,7 @@ class CommandHandler:
         shown = self.demonstration.next_lesson(tick)
         if shown is not None:
             self.updater.apply_own(shown, events)
-        held = self.streams.hold_lesson(tick, self.phase)
+        held = self.control.hold_lesson(tick, self.phase)
         if held is not None:
             self.updater.apply_own(held, events)
         return events
@@ -216,7 +214,7 @@ class CommandHandler:
         """Carry out one command in this tick; return its result and the events that it caused, oldest first.
 
         The events are applied already and must be submitted to the journal. A refusal is a result, no error.
-        `situation`: of this tick. `command`: no message of a stream; those go to `streams`.
+        `situation`: of this tick. `command`: no message of a stream; those go to `control`.
         """
         assert not isinstance(command, Stream)
         # Every copy of a stop brakes: a copy may be the one that matters.
@@ -272,17 +270,17 @@ class CommandHandler:
 
     def _carry_out(self, command: Command, situation: Situation, tick: int) -> LessonResult:
         if isinstance(command, Stop):
-            return LessonResult(self._control.carry_out(command, tick))
+            return LessonResult(self.control.carry_out(command, tick))
         refuse(name_refusal(command.teacher))
         if isinstance(command, Take):
-            return LessonResult(self._control.carry_out(command, tick))
+            return LessonResult(self.control.carry_out(command, tick))
         refuse(self.authority.refusal_for(command.teacher))
         self.authority.claim(command.teacher)
         if _lifts_stop(command):
             refuse(self.stops.refusal_since(command.seen_tick))
         match command:
             case HandOver() | Resume() | RunBehaviour():
-                return LessonResult(self._control.carry_out(command, tick))
+                return LessonResult(self.control.carry_out(command, tick))
             case SetPhase():
                 return LessonResult(self._set_phase(command))
             case SetLessonSpeed(percent=percent):

@@ -1,32 +1,86 @@
-"""Commands about who drives, and for how long: control, running an action, the behaviour, and the session."""
+"""Control: presses and other streams, who drives, running an action, the behaviour, and the session."""
 
 from behaviors.repertoire import Repertoire
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.rla.events import SessionBegun, SessionEnded, TeachingEvent
-from kurt2rt.core.rla.rla import Origin
+from kurt2rt.core.rla.rla import Origin, Phase
 from kurt2rt.core.teaching.authority import ControlAuthority, name_refusal
-from kurt2rt.core.teaching.commands import BeginSession, EndSession, HandOver, Pursue, Resume, RunBehaviour, Stop, Take
+from kurt2rt.core.teaching.commands import (
+    BeginSession,
+    EndSession,
+    HandOver,
+    HoldAction,
+    Pursue,
+    Resume,
+    RunBehaviour,
+    Stop,
+    Stream,
+    Take,
+    Watch,
+)
+from kurt2rt.core.teaching.hold_lessons import HoldLessons
+from kurt2rt.core.teaching.late_press import TeacherDelay
 from kurt2rt.core.teaching.lesson_result import require_action
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.stop_record import StopRecord
-from kurt2rt.core.teaching.stream_handler import StreamHandler
 
 ControlCommand = Stop | Take | HandOver | Resume | RunBehaviour
 
 
 class ControlCommands:
-    """Handler of control commands, which change the control authority and the stops."""
+    """Handler of streams and control commands, which change the control authority and the stops."""
 
     def __init__(
-        self, repertoire: Repertoire, authority: ControlAuthority, stops: StopRecord, streams: StreamHandler
+        self,
+        repertoire: Repertoire,
+        authority: ControlAuthority,
+        stops: StopRecord,
+        holds: HoldLessons,
+        delay: TeacherDelay,
     ) -> None:
-        """Connect the parts; `repertoire` holds the actions that may be run."""
+        """Connect the parts; `repertoire` holds the actions that may be run or held."""
         self._repertoire = repertoire
         self._authority = authority
         self._stops = stops
-        self._streams = streams
+        self._holds = holds
+        self._delay = delay
+
+    def follow(self, command: Stream, tick: int) -> Outcome | None:
+        """Apply a message of a stream in this tick; return a refusal, or None if it was applied."""
+        authority = self._authority
+        refusal = name_refusal(command.teacher) or authority.refusal_for(command.teacher) or self.press_refusal(command)
+        if refusal is not None:
+            return refusal
+        if isinstance(command, Watch):
+            authority.renew_presence(command.teacher, tick, command.seen_tick)
+            return None
+        authority.claim(command.teacher)
+        if isinstance(command, HoldAction):
+            self._hold(command, tick)
+        else:
+            authority.drive(command, tick)
+            self._stops.begin_manual(command.teacher)
+        return None
+
+    def press_refusal(self, command: Stream) -> Outcome | None:
+        """Return why this press does not drive the robot; None if it does, and for a sign of presence."""
+        if isinstance(command, Watch):
+            return None
+        if self._authority.is_press_over(command):
+            return Outcome(RefusalCode.PRESS_OVER)
+        if isinstance(command, HoldAction):
+            if command.action not in self._repertoire:
+                return Outcome.of(RefusalCode.NO_ACTION, action=command.action, known=tuple(self._repertoire))
+            return None if self._stops.active is None else Outcome(RefusalCode.ROBOT_STOPPED)
+        return self._stops.refusal_by_another(command.teacher)
+
+    def hold_lesson(self, tick: int, phase: Phase) -> TeachingEvent | None:
+        """Return the lesson that a held action gives in this tick; None if none is due or no action is held."""
+        if self._authority.held_press is None or not self._authority.is_manual(tick):
+            return None
+        return self._holds.build(tick, phase, self._authority.speed)
 
     def stop(self, stop: ActiveStop, by: str | None) -> None:
         """Stand until a resume.
@@ -67,7 +121,7 @@ class ControlCommands:
         if press_id is not None and self._authority.drives_by_later_press(teacher, press_id, tick):
             return Outcome(ResultCode.RELEASE_SUPERSEDED)
         if press_id is not None and self._authority.is_hold(teacher, press_id):
-            return self._streams.release(press_id)
+            return self._release(press_id)
         self._stops.count(command.command_id, tick)
         self.stop(ActiveStop(StopReason.SAID_STOP if press_id is None else StopReason.LET_GO, teacher), teacher)
         return Outcome(ResultCode.STOPPED)
@@ -80,6 +134,23 @@ class ControlCommands:
         self.stop(ActiveStop(StopReason.BEHAVIOUR_OVER, command.action), command.teacher)
         self._authority.run(command.action, tick, command.ticks)
         return Outcome.of(ResultCode.ACTION_RUNS, action=command.action, ticks=command.ticks)
+
+    def _release(self, press_id: int) -> Outcome:
+        """End the hold of a press, so that the RLAs drive on; a late release changes nothing."""
+        if self._authority.held_press == press_id:
+            self._authority.end_manual()
+        hold = self._holds.newest
+        if hold is None or hold.press_id != press_id or hold.lessons == 0:
+            return Outcome.of(ResultCode.HOLD_RELEASED, lessons=0, lesson=None)
+        return Outcome.of(ResultCode.HOLD_RELEASED, lessons=hold.lessons, lesson=hold.lesson)
+
+    def _hold(self, command: HoldAction, tick: int) -> None:
+        if self._authority.held_press == command.press_id:
+            self._holds.on_message(command, tick)
+        else:
+            self._holds.begin(command, tick, self._authority.speed)
+            self._delay.on_answer(command.teacher, command.seen_tick, self._authority.speed)
+        self._authority.hold(command, tick)
 
 
 class BehaviourSelection:

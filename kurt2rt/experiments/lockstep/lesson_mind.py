@@ -93,7 +93,7 @@ class LessonMind:
         situation = Situation(self._recent.situation(tick), history_frozen=False)
         for command in self.runtime.inbox.pop_all():
             if isinstance(command, Stream):
-                self._handler.streams.handle(command, tick)
+                self._handler.control.follow(command, tick)
                 continue
             assert not isinstance(command, SystemEvent)
             results.append(self._handle(command, situation, tick))
@@ -131,7 +131,7 @@ class LessonMind:
                 break
             self._recent.newest = tick - 1
             if waiting and waiting[0][0] == tick:
-                self._handler.streams.handle(waiting.popleft()[1], tick)
+                self._handler.control.follow(waiting.popleft()[1], tick)
             self._teach(self._handler.teach_driven(tick), tick)
             tick += 1
         if self._events:

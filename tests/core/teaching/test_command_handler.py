@@ -83,7 +83,7 @@ class Lesson:
     def drive(self, teacher: str = "Ann", hold: int = 1) -> Outcome | None:
         """Have a press arrive in the next tick; return why it does not drive the robot."""
         self.tick += 1
-        refusal = self.school.streams.handle(Drive(teacher, self.tick, hold, 0.1, 0.1), self.tick)
+        refusal = self.school.control.follow(Drive(teacher, self.tick, hold, 0.1, 0.1), self.tick)
         assert (refusal is None) == self.school.authority.is_manual(self.tick)
         return refusal
 
