@@ -1,8 +1,8 @@
 """`kurt2rt status`."""
 
 import json as json_lines
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -45,9 +45,9 @@ class _Options:
 def status(options: _Options) -> None:
     """Tell how a running robot program is.
 
-    Ask from another terminal. It shows how late ticks begin,
-    how old the sensor readings are, and the state of bus and disk. For each
-    trouble it shows since when it lasts and what to do.
+    Ask from another terminal. It shows how late ticks begin, how old the sensor
+    readings are, and the state of bus and disk. For each trouble it shows since
+    when it lasts and what to do.
 
         kurt2rt status
         kurt2rt status --watch
@@ -71,25 +71,21 @@ def status(options: _Options) -> None:
 
 
 def _show(reports: Iterator[HealthReport], *, watch: bool, json: bool) -> HealthReport:
+    """Show the first report, or with `watch` each one until Ctrl-C; return the newest."""
     newest = next(reports)
-    with suppress(KeyboardInterrupt), _screen(newest, watch=watch, json=json) as show:
-        for newest in reports if watch else ():
-            show(newest)
+    later = reports if watch else iter(())
+    with suppress(KeyboardInterrupt):
+        if json:
+            typer.echo(_line(newest))
+            for newest in later:
+                typer.echo(_line(newest))
+        elif watch:
+            with Live(as_rich(newest), auto_refresh=False) as live:
+                for newest in later:
+                    live.update(as_rich(newest), refresh=True)
+        else:
+            print_whole(Console(), as_rich(newest))
     return newest
-
-
-@contextmanager
-def _screen(first: HealthReport, *, watch: bool, json: bool) -> Iterator[Callable[[HealthReport], None]]:
-    console = Console()
-    if json:
-        typer.echo(_line(first))
-        yield lambda report: typer.echo(_line(report))
-    elif watch:
-        with Live(as_rich(first), console=console, auto_refresh=False) as live:
-            yield lambda report: live.update(as_rich(report), refresh=True)
-    else:
-        print_whole(console, as_rich(first))
-        yield _nothing
 
 
 def as_rich(report: HealthReport) -> Group:
@@ -112,7 +108,3 @@ def _style_of(report: HealthReport) -> str:
 
 def _line(report: HealthReport) -> str:
     return json_lines.dumps(plain_of(report))
-
-
-def _nothing(_: HealthReport) -> None:
-    pass

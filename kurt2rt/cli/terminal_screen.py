@@ -13,9 +13,9 @@ from rich.console import Console
 
 from hal.health import Health
 from kurt2rt.cli.live_screen import LiveScreen
+from kurt2rt.service.health.snapshot import format_activity
 from kurt2rt.service.post_tick import ProgramStatus
 from kurt2rt.service.status_line import (
-    format_activity,
     format_alarms,
     format_guard,
     format_numbers,
@@ -83,11 +83,11 @@ class TerminalScreen:
             wrong = [*format_alarms(status, health), *more]
             behind = " | ".join(each.strip() for each in (*format_numbers(status), *format_guard(status)))
             self._live.show(format_timed_activity(status), behind, wrong)
-            held = [format_activity(status)] if status.record.guard_result.latched else []
+            held = [format_activity(status.record)] if status.record.guard_result.latched else []
             self._print_alarm(" | ".join([*held, *wrong]), "yellow")
         elif self._as_service:
             # The log gets changes only; the present status is the unit's.
-            stands = [format_activity(status)] if status.runtime.handler.stops.active else []
+            stands = [format_activity(status.record)] if status.runtime.handler.stops.active else []
             told = " | ".join([*stands, *format_problems(status, health), *more])
             self._print_alarm(told, None if stands else "red")
         else:

@@ -1,14 +1,13 @@
 """Status line of the robot program, once a second."""
 
 from hal.health import Health
-from kurt2rt.core.decision.standing import short_text
-from kurt2rt.core.rla.rla import MID, rla_title
+from kurt2rt.service.health.snapshot import format_activity
 from kurt2rt.service.post_tick import ProgramStatus
 
 
 def status_line(status: ProgramStatus, health: Health, trouble: str = "") -> str:
     """Return one line: what drives the wheels and why, lessons, lateness, and what is wrong, `trouble` last."""
-    parts = [f"{_clock_s(status):8.1f} s", f"{format_activity(status):<48}", *format_numbers(status)]
+    parts = [f"{_clock_s(status):8.1f} s", f"{format_activity(status.record):<48}", *format_numbers(status)]
     return " | ".join([*parts, *format_problems(status, health), *([trouble] if trouble else [])])
 
 
@@ -25,34 +24,11 @@ def format_numbers(status: ProgramStatus) -> list[str]:
 
 def format_timed_activity(status: ProgramStatus) -> str:
     """Return the time since the start, and what drives the wheels or why they stand."""
-    return f"{_clock_s(status):.1f} s  {format_activity(status)}"
+    return f"{_clock_s(status):.1f} s  {format_activity(status.record)}"
 
 
 def _clock_s(status: ProgramStatus) -> float:
     return status.record.tick * status.runtime.robot.cycle_s
-
-
-def format_activity(status: ProgramStatus) -> str:
-    """Return what drives the wheels and why, or why the robot stands."""
-    record = status.record
-    asks = record.standing.asks
-    decision, match, stands = record.decision, record.decision.match, short_text(record.standing)
-    near = "" if match is None else f" at {match.distance:.0f} of R {match.radius:.0f}"
-    if stands:
-        return stands
-    if decision.rla_id is not None and not asks:
-        text = f"{decision.action} by {rla_title(decision.rla_id, record.behaviour)}{near}"
-    elif decision.driving and not asks:
-        text = f"{decision.action}, as the teacher says"
-    elif decision.asking and decision.asks_at == MID:
-        text = "stands and asks the way" + ("" if match is None else f", nearest {match.rla.title}{near}")
-    else:
-        about = f" about {record.behaviour}" if record.behaviour else ""
-        text = "stands and asks" + (about if match is None else f", nearest {match.rla.title}{near}")
-    if decision.mid is not None and decision.driving and not asks:
-        by = "its teacher" if decision.mid.rla_id is None else rla_title(decision.mid.rla_id, "", MID)
-        text += f", sent by {by}"
-    return text
 
 
 def format_problems(status: ProgramStatus, health: Health) -> list[str]:

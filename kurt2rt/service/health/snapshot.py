@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from hal.health import Health
 from hal.sensor_watch import BrokenSensor
 from kurt2rt.core.decision.standing import short_text
-from kurt2rt.core.rla.rla import rla_title
+from kurt2rt.core.rla.rla import MID, rla_title
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import JournalWriter
@@ -73,19 +73,28 @@ def take_snapshot(
         rlas=len(system),
         lessons=system.history.standing,
         progress=runtime.progress.progress(),
-        doing=_doing(record),
+        doing=format_activity(record),
         broken_sensors=record.broken_sensors,
     )
 
 
-def _doing(record: TickRecord) -> str:
-    decision, stands = record.decision, short_text(record.standing)
+def format_activity(record: TickRecord) -> str:
+    """Return what drives the wheels and why, or why the robot stands."""
+    asks = record.standing.asks
+    decision, match, stands = record.decision, record.decision.match, short_text(record.standing)
+    near = "" if match is None else f" at {match.distance:.0f} of R {match.radius:.0f}"
     if stands:
         return stands
-    if record.standing.asks:
-        return "stands and asks"
-    if decision.rla_id is not None:
-        return f"{decision.action} by {rla_title(decision.rla_id, record.behaviour)}"
-    if decision.driving:
-        return f"{decision.action}, as the teacher says"
-    return "stands and asks"
+    if decision.rla_id is not None and not asks:
+        text = f"{decision.action} by {rla_title(decision.rla_id, record.behaviour)}{near}"
+    elif decision.driving and not asks:
+        text = f"{decision.action}, as the teacher says"
+    elif decision.asking and decision.asks_at == MID:
+        text = "stands and asks the way" + ("" if match is None else f", nearest {match.rla.title}{near}")
+    else:
+        about = f" about {record.behaviour}" if record.behaviour else ""
+        text = "stands and asks" + (about if match is None else f", nearest {match.rla.title}{near}")
+    if decision.mid is not None and decision.driving and not asks:
+        by = "its teacher" if decision.mid.rla_id is None else rla_title(decision.mid.rla_id, "", MID)
+        text += f", sent by {by}"
+    return text

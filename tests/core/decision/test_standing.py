@@ -29,9 +29,7 @@ from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Teach, Watch
 from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.service.health.probes import Probes
-from kurt2rt.service.health.snapshot import take_snapshot
-from kurt2rt.service.post_tick import ProgramStatus
-from kurt2rt.service.status_line import format_activity
+from kurt2rt.service.health.snapshot import format_activity, take_snapshot
 from kurt2rt.teacher.client.link_quality import LinkQuality
 from kurt2rt.teacher.page.views import state_view
 from kurt2rt.teacher.scripted.channel_teacher import view_of_state
@@ -86,7 +84,7 @@ def test_latched_stall_has_length_and_resume_on_every_surface() -> None:
     assert page_of(desk.picture) == standing_headline(stands, GO_ON_PAGE)
     assert format_state(desk.picture) == standing_headline(stands, GO_IN_TERMINAL)
     short = short_text(stands)
-    assert format_activity(ProgramStatus(desk.record, desk.runtime, 0, None, "")) == short
+    assert format_activity(desk.record) == short
     snapshot = take_snapshot(desk.runtime, desk.record, cast("JournalWriter", _Keeping()), Probes(), 0.0)
     assert snapshot.doing == short
 
@@ -166,7 +164,7 @@ def test_a_robot_that_is_held_at_a_bumper_asks_on_every_surface() -> None:
     assert page_of(picture) == question
     assert str(build_question(picture)).startswith(f"{question} RLA 1 ")
     short = short_text(picture.standing)
-    assert format_activity(ProgramStatus(desk.record, desk.runtime, 0, None, "")) == short
+    assert format_activity(desk.record) == short
     assert take_snapshot(desk.runtime, desk.record, cast("JournalWriter", _Keeping()), Probes(), 0.0).doing == short
     assert picture.question == ()  # the situation is known: nothing differs
     assert not expects_answer(picture)  # an action that is typed corrects the RLA
