@@ -3,7 +3,7 @@
 import copy
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from itertools import combinations, product
 from typing import Annotated, Any, Literal, Self
 
@@ -134,50 +134,35 @@ def content_of_task(task: TaskSettings) -> dict[str, Any]:
 
 def value_at(content: Mapping[str, Any], key: str) -> float:
     """Return the number at a dotted key, in the unit of its name (m, s or counts). Raises SettingsError without one."""
-    place: Any = content
-    for level in key.split("."):
-        place = _step(place, level, key)
+    *_, place = _places(content, key)
     if isinstance(place, bool) or not isinstance(place, int | float):
         raise SettingsError(f"{key}: no number (got {place!r})", where="space", do="give a key that holds a number")
     return place
 
 
-def _step(place: Any, level: str, key: str) -> Any:
-    if isinstance(place, Mapping) and level in place:
-        return place[level]
-    if isinstance(place, list) and level.isdecimal() and int(level) < len(place):
-        return place[int(level)]
-    names = range(len(place)) if isinstance(place, list) else place if isinstance(place, Mapping) else ()
-    allowed = ", ".join(map(str, names)) or "nothing"
-    raise SettingsError(f"{key}: no such key (got {level}, allowed {allowed})", where="space")
+def _places(content: Any, key: str) -> Iterator[Any]:
+    """Yield what each level of a dotted key leads to. Raises SettingsError if a level leads nowhere."""
+    place = content
+    for level in key.split("."):
+        names = range(len(place)) if isinstance(place, list) else place if isinstance(place, Mapping) else ()
+        if level not in map(str, names):
+            allowed = ", ".join(map(str, names)) or "nothing"
+            raise SettingsError(f"{key}: no such key (got {level}, allowed {allowed})", where="space")
+        place = place[int(level) if isinstance(place, list) else level]
+        yield place
 
 
 def _changes_of_values(content: Mapping[str, Any], values: Values) -> dict[str, Any]:
-    """Return what to change in the task's file, by dotted key; a list that a key leads through is whole.
-
-    Raises SettingsError if a key leads nowhere.
-    """
+    """Return what to change in the task's file, by dotted key; a list that a key leads through is whole."""
     changed = copy.deepcopy(dict(content))
-    tops: dict[str, Any] = {}
+    tops = {}
     for key, value in values.items():
-        value_at(changed, key)
-        *levels, last = key.split(".")
-        place: Any = changed
-        top = ""
-        for number, level in enumerate(levels):
-            place = _step(place, level, key)
-            if isinstance(place, list) and not top:
-                top = ".".join(levels[: number + 1])
-        place[int(last) if isinstance(place, list) else last] = value
-        tops[top or key] = None
-    return {top: _at(changed, top) for top in tops}
-
-
-def _at(content: Mapping[str, Any], key: str) -> Any:
-    place: Any = content
-    for level in key.split("."):
-        place = place[level]
-    return place
+        levels, places = key.split("."), [changed, *_places(changed, key)]
+        holder = places[-2]
+        holder[int(levels[-1]) if isinstance(holder, list) else levels[-1]] = value
+        depth = next((depth for depth, place in enumerate(places) if isinstance(place, list)), len(levels))
+        tops[".".join(levels[:depth])] = places[depth] if depth < len(levels) else value
+    return tops
 
 
 class TaskSpace:
