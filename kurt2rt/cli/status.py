@@ -13,8 +13,7 @@ from rich.live import Live
 from rich.text import Text
 
 from config.errors import ExitCode
-from kurt2rt.channel.protocol.health import HealthReport
-from kurt2rt.channel.protocol.health_codec import plain_of
+from kurt2rt.channel.protocol.health import HEALTH, HealthReport
 from kurt2rt.channel.protocol.health_text import URGENT, WARNS, headline, rows_of, trouble_in
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import SettingsName, task_option
@@ -107,4 +106,4 @@ def _style_of(report: HealthReport) -> str:
 
 
 def _line(report: HealthReport) -> str:
-    return json_lines.dumps(plain_of(report))
+    return json_lines.dumps(HEALTH.plain_of(report))

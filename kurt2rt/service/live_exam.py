@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Self
 
 from kurt2rt.channel.protocol.exam_status import EXAM, NO_EXAM, ExamStatus
-from kurt2rt.core.teaching.message_fields import WireError
+from kurt2rt.core.message_fields import WireError
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 

@@ -14,7 +14,7 @@ from behaviors.contained_behaviour import failures_of
 from config.plugin_source import plugins_in_use
 from hal.guard_reason import GuardReason
 from hal.robot import Robot
-from kurt2rt.channel.protocol.health_codec import plain_of
+from kurt2rt.channel.protocol.health import HEALTH
 from kurt2rt.channel.protocol.limits import BOOT_BYTES, FASTEST
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.channel.server.dependencies import RunControl
@@ -197,7 +197,7 @@ class _Run:
             self._health.include(
                 drops={"the recording": lambda: recorder.dropped}, errors={"recording": lambda: recorder.trouble}
             )
-            self._health.add_listener(lambda report: recorder.on_health(plain_of(report)))
+            self._health.add_listener(lambda report: recorder.on_health(HEALTH.plain_of(report)))
         liveness = {"knowledge journal": lambda: writer.is_alive, **context.liveness}
         period_s = service.runtime.robot.cycle_s
         self._heartbeat = WatchdogNotifier(context.notifier, period_s, liveness, context.log)

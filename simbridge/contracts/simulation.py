@@ -7,7 +7,6 @@ and `SimulatedWorld` is the part that a teacher may see and change. A real robot
 import random
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 
 from hal.guarded_robot import GuardedRobot
@@ -37,8 +36,7 @@ WallSide = Literal["left", "right"]
 """Side of a robot on which the wall is that it follows."""
 
 
-@dataclass(frozen=True, slots=True)
-class SimulatedPlace:
+class SimulatedPlace(NamedTuple):
     """True pose of the simulated robot in m and rad, with its laps and collisions so far."""
 
     x_m: float

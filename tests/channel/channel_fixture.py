@@ -18,10 +18,10 @@ from kurt2rt.channel.server.reply import Reply
 from kurt2rt.channel.server.request_handler import LONGEST_WAIT_S, Sender
 from kurt2rt.channel.server.resources import Keys
 from kurt2rt.core.event_store import EventStore, InMemoryEventStore
+from kurt2rt.core.message_fields import checks_of
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, outcome_in
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Drive, HoldAction, Single, Teach, Watch
-from kurt2rt.core.teaching.message_fields import checks_of
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
 from kurt2rt.knowledge.journal.writer import Acknowledgement

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.channel.protocol.health_codec import report_of
+from kurt2rt.channel.protocol.health import HEALTH
 from tests.cli.helpers import CommandLine, running
 
 
@@ -22,6 +22,6 @@ def test_status_is_read_next_to_the_knowledge_file(
         assert f"page      {link}" in kurt2rt("status", "mine.knowledge").out
         told = kurt2rt("status", "mine.knowledge", "--json").out
         assert "token" not in told  # the address of a page is for this user alone
-        report = report_of(json.loads(told))
+        report = HEALTH.read(json.loads(told))
         assert report.task == "wall_following"
         assert [each.of for each in report.disks] == ["knowledge", "recordings"]

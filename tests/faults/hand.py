@@ -6,6 +6,7 @@ from typing import Any
 
 from kurt2rt.channel.protocol.codec import WireError, decode_request, encode_request
 from kurt2rt.channel.protocol.request_types import StreamRequest
+from kurt2rt.channel.server.channel import describe_robot
 from kurt2rt.channel.server.reply import Reply, ReplyStatus
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender
 from kurt2rt.core.teaching.commands import Drive
@@ -36,7 +37,9 @@ class Hand:
         self._injection, self._time, self._chance = injection, injection.time, chance
         dependencies = service.channel_dependencies()
         self._boot = dependencies.boot
-        self._handler = RequestHandler(service.runtime, dependencies, {})
+        self._handler = RequestHandler(
+            service.runtime, dependencies, describe_robot(service.runtime, self._boot, simulated=True)
+        )
         self._number = 0
         self._newest = (0, b"")
         self._passed_at_s = 0.0

@@ -7,7 +7,7 @@ import cbor2
 import pytest
 
 from kurt2rt.channel.protocol.codec import decode_request
-from kurt2rt.core.teaching.message_fields import WireError
+from kurt2rt.core.message_fields import WireError
 
 _BOOT, _ID = b"boot", b"12345678"
 _BODIES: tuple[tuple[str, list[object]], ...] = (

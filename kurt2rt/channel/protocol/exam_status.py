@@ -1,22 +1,21 @@
 """Status of the exam of a simulated robot, as sent to its teachers."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
-from kurt2rt.channel.protocol.cbor_schema import LINE, NAME, DataclassCodec, MapOf
-from kurt2rt.core.teaching.message_fields import Flag, Float, ListOf
-
-_MOST_WORLDS = 32
+from kurt2rt.channel.protocol.schema import Codec
+from kurt2rt.core.message_fields import Line, Share, Title, Truth, UpTo
 
 
 @dataclass(frozen=True, slots=True)
 class WorldVerdict:
     """Result of the exam in one world."""
 
-    world: str
-    passed: bool
-    text: str
+    world: Title
+    passed: Truth
+    text: Line
     """Progress compared with the teacher's own policy, collisions, early end."""
-    judged: bool = True
+    judged: Truth = True
     """False if the teacher's own policy makes no progress in this world; `passed` means nothing then."""
 
 
@@ -24,30 +23,19 @@ class WorldVerdict:
 class ExamStatus:
     """Exam under way, or the newest one."""
 
-    running: bool
-    share: float
+    running: Truth
+    share: Share
     """Fraction of the robot time that is over, 0 to 1."""
-    text: str
+    text: Line
     """Present drive, or the verdict in a sentence; empty before the first exam."""
-    verdicts: tuple[WorldVerdict, ...] = ()
+    verdicts: Annotated[tuple[WorldVerdict, ...], UpTo(32)] = ()
     """One verdict per world; empty until the exam is over."""
-    picture: str = ""
+    picture: Title = ""
     """Name of the PNG file, to be fetched as `/file`; empty until it is drawn."""
-    trouble: str = ""
+    trouble: Line = ""
     """Reason of a missing verdict in a line; empty without error."""
 
 
 NO_EXAM = ExamStatus(False, 0.0, "")
 
-EXAM = DataclassCodec[ExamStatus](
-    "the exam",
-    MapOf(
-        ExamStatus,
-        running=Flag(),
-        share=Float(1.0),
-        text=LINE,
-        verdicts=ListOf(MapOf(WorldVerdict, world=NAME, passed=Flag(), text=LINE, judged=Flag()), most=_MOST_WORLDS),
-        picture=NAME,
-        trouble=LINE,
-    ),
-)
+EXAM = Codec[ExamStatus]("the exam", ExamStatus)

@@ -1,9 +1,18 @@
 """Health report of the robot's program, made once a second."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Annotated, Any
 
-from kurt2rt.channel.protocol.trouble_code import TroubleCode, trouble_text
+from pydantic import AfterValidator, Field, WrapSerializer
+
+from kurt2rt.channel.protocol.schema import Codec
+from kurt2rt.channel.protocol.trouble_code import TroubleCode, numbers_of, trouble_text
+from kurt2rt.core.message_fields import Line, Number, Share, Text, Time, Title, Truth, UpTo
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
+
+MOST_ROWS = 16
+"""Most troubles, disks and queues in a report; further ones are left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,14 +23,14 @@ class Trouble:
     """
 
     code: TroubleCode
-    since_s: float
+    since_s: Time
     """Duration so far in seconds."""
-    urgent: bool
+    urgent: Truth
     """True if the robot stands because of it, or lessons are at risk."""
-    name: str = ""
+    name: Title = ""
     """Sensor, folder, queue or part, as the code says."""
-    numbers: tuple[float, ...] = ()
-    line: str = ""
+    numbers: Annotated[tuple[Time, ...], UpTo(4)] = ()
+    line: Line = ""
     """`what is wrong; what to do`, of codes without a text of their own."""
 
     @property
@@ -40,22 +49,37 @@ class Trouble:
         return trouble_text(self.code, self.name, self.numbers, self.line)[1]
 
 
+def _complete(trouble: Trouble) -> Trouble:
+    if len(trouble.numbers) < numbers_of(trouble.code):
+        raise ValueError(f"trouble {trouble.code!r} has to have {numbers_of(trouble.code)} numbers")
+    return trouble
+
+
+def _in_words(trouble: Trouble, inner: Callable[[Trouble], dict[str, Any]]) -> dict[str, Any]:
+    texts = {"about": trouble.about, "what": trouble.what, "to_do": trouble.to_do}
+    return {**inner(trouble), **{key: Text(512).cut(text) for key, text in texts.items()}}
+
+
+ToldTrouble = Annotated[Trouble, AfterValidator(_complete), WrapSerializer(_in_words)]
+"""Trouble that tells its texts, too."""
+
+
 @dataclass(frozen=True, slots=True)
 class TickLateness:
     """Lateness of ticks in milliseconds, over the last minute unless stated."""
 
-    newest_ms: float
+    newest_ms: Time
     """Worst lateness of the last second."""
-    median_ms: float
-    p99_ms: float
-    worst_ms: float
-    took_p99_ms: float
+    median_ms: Time
+    p99_ms: Time
+    worst_ms: Time
+    took_p99_ms: Time
     """Duration of ticks, 99th percentile."""
-    ticks: int
+    ticks: Number
     """Number of ticks since the program started."""
-    missed: int
+    missed: Number
     """Number of due ticks that were skipped since the program started; they are not caught up."""
-    missed_lately: int
+    missed_lately: Number
     """Number of ticks skipped in the last minute."""
 
 
@@ -63,37 +87,37 @@ class TickLateness:
 class SensorAges:
     """Ages of the newest frames at the tick of the report, in seconds; None before the first frame."""
 
-    infrared_s: float | None
+    infrared_s: Time | None
     """Age of the oldest of the infra-red frames."""
-    encoders_s: float | None
-    bumpers_s: float | None
+    encoders_s: Time | None
+    bumpers_s: Time | None
 
 
 @dataclass(frozen=True, slots=True)
 class BusHealth:
     """Counters of the robot's bus since it was opened."""
 
-    controller: str
+    controller: Title
     """State of this machine's CAN controller: a value of hal.bus_state.ControllerState."""
-    frames: int
+    frames: Number
     """All frames received."""
-    junk: int
+    junk: Number
     """Frames of a known identifier with an invalid content."""
-    error_frames: int
+    error_frames: Number
     """Error frames of the CAN controller."""
-    foreign_control: int
+    foreign_control: Number
     """CONTROL frames of another sender."""
-    send_failures: int
-    receive_failures: int
+    send_failures: Number
+    receive_failures: Number
 
 
 @dataclass(frozen=True, slots=True)
 class DiskSpace:
     """Free room on the disk of one kind of file, such as recordings."""
 
-    of: str
+    of: Title
     """Content of the disk: knowledge, recordings."""
-    free_bytes: int | None
+    free_bytes: Number | None
     """None while the disk does not answer."""
 
 
@@ -101,9 +125,9 @@ class DiskSpace:
 class JournalHealth:
     """State of the lessons on their way to the disk."""
 
-    unwritten: int
+    unwritten: Number
     """Number of lessons that are not durable yet."""
-    last_write_ms: float | None
+    last_write_ms: Time | None
     """Duration of the last durable write; None before the first."""
 
 
@@ -111,16 +135,16 @@ class JournalHealth:
 class MachineHealth:
     """Program and the machine that it runs on."""
 
-    memory_bytes: int
+    memory_bytes: Number
     """Memory of the program; 0 if the kernel does not tell."""
-    available_bytes: int | None
+    available_bytes: Number | None
     """Available memory of the machine; None if it does not tell."""
-    processor_share: float
+    processor_share: Time
     """Fraction of one core used in the last second."""
-    threads: int
-    battery: float | None
+    threads: Number
+    battery: Share | None
     """Charge of this machine's battery, 0 to 1; None without battery. No frame of KURT2 carries its own voltage."""
-    discharging: bool
+    discharging: Truth
     """True while that battery discharges."""
 
 
@@ -128,49 +152,52 @@ class MachineHealth:
 class Drops:
     """Number of entries that a full queue dropped since the program started."""
 
-    of: str
-    count: int
+    of: Title
+    count: Number
 
 
 @dataclass(frozen=True, slots=True)
 class HealthReport:
     """Health of program, bus, disks and machine at one tick."""
 
-    version: str
+    version: Title
     """Version of kurt2rt."""
-    boot: str
+    boot: Title
     """Random letters of this start."""
-    robot: str
-    task: str
-    knowledge: str
+    robot: Title
+    task: Title
+    knowledge: Line
     """Knowledge file that keeps the lessons."""
-    started_at: str
+    started_at: Title
     """Start of the program, UTC, ISO 8601."""
-    uptime_s: float
-    tick: int
-    doing: str
+    uptime_s: Time
+    tick: Number
+    doing: Line
     """Mover of the wheels, or reason of the standstill, in a few words."""
-    rlas: int
-    lessons: int
+    rlas: Number
+    lessons: Number
     """Number of lessons that stand."""
     punctuality: TickLateness
     ages: SensorAges
     bus: BusHealth | None
     """None if the robot reports no bus."""
-    disks: tuple[DiskSpace, ...]
+    disks: Annotated[tuple[DiskSpace, ...], UpTo(MOST_ROWS)]
     safety: JournalHealth
     machine: MachineHealth
-    drops: tuple[Drops, ...]
-    troubles: tuple[Trouble, ...]
+    drops: Annotated[tuple[Drops, ...], UpTo(MOST_ROWS)]
+    troubles: Annotated[tuple[ToldTrouble, ...], UpTo(MOST_ROWS)]
     """Urgent troubles first, then by duration, longest first."""
-    pages: tuple[str, ...] = ()
+    pages: Annotated[tuple[str, ...], Field(exclude=True), AfterValidator(lambda _: ())] = ()
     """Links to the teacher's page with their tokens, for this machine's user only, never over the channel."""
     progress: Progress = NO_PROGRESS
     """Progress of teaching in the last minute."""
-    plugins: tuple[str, ...] = ()
+    plugins: Annotated[tuple[Line, ...], UpTo(MOST_ROWS)] = ()
     """Plug-ins in use from outside of the project, each with its package and version, or file, and its hash."""
 
     @property
     def urgent(self) -> bool:
         """True if a trouble is urgent."""
         return any(each.urgent for each in self.troubles)
+
+
+HEALTH = Codec[HealthReport]("the health report", HealthReport)

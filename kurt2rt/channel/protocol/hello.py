@@ -2,103 +2,99 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
+
+from pydantic import Field
 
 from kurt2rt.channel.protocol.limits import BOOT_BYTES, VERSION
-from kurt2rt.core.perception.sensor_words import InfraredLaw, SensorWords
-from kurt2rt.core.teaching.message_fields import (
-    LARGEST_NUMBER,
+from kurt2rt.channel.protocol.schema import Codec
+from kurt2rt.core.message_fields import (
     Bytes,
-    Flag,
+    Finite,
     Float,
     Int,
-    ListOf,
-    OrNone,
-    Row,
-    Text,
+    Number,
+    OneOf,
+    Share,
+    Title,
+    Truth,
+    UpTo,
     WireError,
+    Word,
 )
+from kurt2rt.core.perception.sensor_words import InfraredLaw, SensorWords
 
-_NAME = Text(64)
-_METRES = Float(1000.0, "m")
-_NUMBER = Int(0, LARGEST_NUMBER)
-_BOOT = Bytes(BOOT_BYTES)
-_SENSORS = ListOf(Row((_NAME, _NAME, _METRES, _METRES, Float(360.0, "degrees"))), most=64)
-_APPRAISALS = ListOf(Row((_NAME, Int(-1, 1))), most=16)
-_MID = OrNone(Row((_NAME, Int(0, 256), Float(1e9))))
-_OUTLINE = Row((_METRES, _METRES))
-_WHAT = Text(128)
-_COUNTS = Float(1e6, "counts")
-_LAW = Row((_COUNTS, _METRES, _COUNTS, _METRES, _METRES, _COUNTS))
+Metres = Annotated[float, Float(1000.0, "m")]
+Words = Annotated[tuple[Word, ...], UpTo(256)]
 
 
 class AppraisalName(NamedTuple):
     """Name of an appraisal for teaching the critic, with its value."""
 
-    name: str
-    value: int
+    name: Word
+    value: Annotated[int, OneOf((-1, 0, 1))]
     """-1, 0 or +1."""
 
 
 class MidIntroduction(NamedTuple):
     """Part of `Hello` on the mid level: the kind and length of its situation, and R."""
 
-    kind: str
+    kind: Word
     """Kind of its situation: history, place."""
-    length: int
+    length: Annotated[int, Int(0, 256)]
     """Number of features of the situation."""
-    radius: float
+    radius: Finite
     """Radius R of its RLA system."""
 
 
 class SensorPlace(NamedTuple):
     """Pose of an infra-red sensor in the robot's frame: x forward, y to the left."""
 
-    name: str
-    label: str
-    x_m: float
-    y_m: float
-    heading_deg: float
+    name: Word
+    label: Word
+    x_m: Metres
+    y_m: Metres
+    heading_deg: Annotated[float, Float(360.0, "degrees")]
 
 
 @dataclass(frozen=True, slots=True)
 class Hello:
     """Answer to /hello: the robot's names, limits and features, which stay for a whole start of it."""
 
-    version: int
+    version: Annotated[int, Int(VERSION, VERSION), Field(alias="v")]
     """Version of the wire contract."""
-    boot: bytes
-    tick: int
-    robot: str
-    task: str
-    radius: float
+    boot: Annotated[bytes, Bytes(BOOT_BYTES)]
+    tick: Number
+    robot: Word
+    task: Word
+    radius: Finite
     """Radius R of the RLA system."""
-    period_s: float
+    period_s: Annotated[float, Float(10.0, "s")]
     """Period of a tick in seconds."""
-    actions: tuple[str, ...]
+    actions: Words
     """Names of the repertoire."""
-    sensors: tuple[SensorPlace, ...]
-    outline: tuple[float, float]
+    sensors: Annotated[tuple[SensorPlace, ...], UpTo(64)]
+    outline: tuple[Metres, Metres]
     """Length and width of the robot in metres."""
-    max_m_s: float
-    simulated: bool
-    phases: tuple[str, ...]
+    max_m_s: Annotated[float, Float(10.0, "m/s")]
+    simulated: Truth
+    phases: Words
     """Names of the training phases; the first one's number is 1."""
-    what: str
+    what: Title
     """Sentence on the task for its teacher; empty if the task has none."""
     law: InfraredLaw
     """Law of the infra-red sensors."""
-    track_m: float
+    track_m: Metres
     """Distance between the sides that turns the robot by (right - left) / track_m, in m."""
-    behaviours: tuple[str, ...] = ("",)
+    behaviours: Words = ("",)
     """Behaviours of the task, each with its own RLAs; a single behaviour may have an empty name."""
-    appraisals: tuple[AppraisalName, ...] = ()
+    appraisals: Annotated[tuple[AppraisalName, ...], UpTo(16)] = ()
     """Critic's repertoire; empty if the robot has no critic."""
-    trusted_from: float = 1.0
+    trusted_from: Share = 1.0
     """Least agreement of a trusted critic."""
     mid: MidIntroduction | None = None
     """None if no mid level chooses the behaviours."""
-    seeks: bool = False
+    seeks: Truth = False
     """True if the robot can seek a goal."""
 
     @property
@@ -107,44 +103,15 @@ class Hello:
         return SensorWords({each.name: each.label for each in self.sensors}, self.law)
 
 
+HELLO = Codec[Hello]("the robot's introduction", Hello)
+
+
 def hello_of(body: Mapping[str, Any]) -> Hello:
     """Return the description in a decoded body. Raises WireError, with the remedy for another version."""
-    _require_version(body)
-    try:
-        phases = body["phases"]
-        if not isinstance(phases, Mapping) or set(phases) != set(range(1, len(phases) + 1)):
-            raise WireError("phases have to be a map from 1, 2, 3 ... to names")
-        return Hello(
-            version=VERSION,
-            boot=_BOOT("boot", body["boot"]),
-            tick=_NUMBER("tick", body["tick"]),
-            robot=_NAME("robot", body["robot"]),
-            task=_NAME("task", body["task"]),
-            radius=Float(1e9)("radius", body["radius"]),
-            period_s=Float(10.0, "s")("period_s", body["period_s"]),
-            actions=ListOf(_NAME, most=256)("actions", body["actions"]),
-            sensors=tuple(SensorPlace(*each) for each in _SENSORS("sensors", body["sensors"])),
-            outline=_OUTLINE("outline", body["outline"]),
-            max_m_s=Float(10.0, "m/s")("max_m_s", body["max_m_s"]),
-            simulated=Flag()("simulated", body["simulated"]),
-            phases=ListOf(_NAME, most=5)("phases", [phases[number] for number in sorted(phases)]),
-            behaviours=ListOf(_NAME, most=64)("behaviours", body["behaviours"]),
-            appraisals=tuple(AppraisalName(*each) for each in _APPRAISALS("appraisals", body["appraisals"])),
-            trusted_from=Float(1.0)("trusted_from", body["trusted_from"]),
-            mid=None if (mid := _MID("mid", body["mid"])) is None else MidIntroduction(*mid),
-            seeks=Flag()("seeks", body["seeks"]),
-            what=_WHAT("what", body["what"]),
-            law=InfraredLaw(*_LAW("law", body["law"])),
-            track_m=_METRES("track_m", body["track_m"]),
-        )
-    except KeyError as error:
-        raise WireError(f"the robot's introduction has no {error}") from error
-
-
-def _require_version(body: Mapping[str, Any]) -> None:
-    version = Int(1, LARGEST_NUMBER)("version of the wire contract", body.get("v"))
-    if version != VERSION:
+    version = body.get("v")
+    if version != VERSION:  # whose other keys may be missing
         raise WireError(
             f"the robot speaks version {version} of the wire contract, and this device version {VERSION}; install "
             "the same kurt2rt on both"
         )
+    return HELLO.read(body)

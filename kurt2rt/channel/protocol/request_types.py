@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from kurt2rt.channel.protocol.limits import BOOT_BYTES, COMMAND_ID_BYTES, LONGEST_WAY_M, UPLOAD_ID_BYTES
+from kurt2rt.core.message_fields import Bytes, Float, Number
 from kurt2rt.core.teaching.commands import Single, Stream
-from kurt2rt.core.teaching.message_fields import Bytes, Float, Number
 
 Boot = Annotated[bytes, Bytes(BOOT_BYTES)]
 CommandId = Annotated[bytes, Bytes(COMMAND_ID_BYTES)]

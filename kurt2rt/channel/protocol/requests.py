@@ -14,19 +14,7 @@ from kurt2rt.channel.protocol.request_types import (
     UploadId,
     Way,
 )
-from kurt2rt.core.teaching.message_fields import (
-    LONGEST_TEXT,
-    Bytes,
-    BytesUpTo,
-    Int,
-    Name,
-    NameOrNone,
-    Number,
-    NumberOrNone,
-    OneWord,
-    Text,
-    Truth,
-)
+from kurt2rt.core.message_fields import LONGEST_TEXT, Bytes, BytesUpTo, Int, Name, Number, OneOf, Text, Truth
 
 TABLE, PACKAGE = "table", "package"
 """Forms of an export: CSV, and the archive of `kurt2rt knowledge export`."""
@@ -60,7 +48,7 @@ class StopRequest(Request):
     """Stop. It needs neither a boot id nor a fresh state."""
 
     command_id: CommandId
-    press_id: NumberOrNone = None
+    press_id: Number | None = None
     """Press that ends, so that a late copy does not end the next one; None: everything. After a press of `/hold` the
     robot drives on by its RLAs."""
 
@@ -82,7 +70,7 @@ class SaveRequest(CommandRequest):
 class ExportRequest(CommandRequest):
     """Write the RLAs as a table on the robot, or all knowledge as one file to give away."""
 
-    form: Annotated[str, OneWord((TABLE, PACKAGE))] = TABLE
+    form: Annotated[str, OneOf((TABLE, PACKAGE))] = TABLE
 
 
 @_at("/file")
@@ -161,9 +149,9 @@ class SimulationRequest(Request):
 class NextRunRequest(CommandRequest):
     """End this run and begin the next one, in which the robot stands until GO."""
 
-    world: NameOrNone
+    world: Name | None
     """None: the present world."""
-    task: NameOrNone
+    task: Name | None
     """None: the present task."""
     fresh: Truth
     """Begin with an empty knowledge file; the present one is archived."""

@@ -1,13 +1,15 @@
-"""Strict CBOR for input from the network."""
+"""Strict CBOR for input from the network, and codecs of annotated classes."""
 
 import io
 from collections.abc import Iterator, Mapping
-from typing import Any, NoReturn
+from functools import cached_property
+from typing import Any, Generic, NoReturn, TypeVar
 
 import cbor2
+from pydantic import TypeAdapter, ValidationError
 
 from config.errors import UserError
-from kurt2rt.core.teaching.message_fields import WireError
+from kurt2rt.core.message_fields import WireError, wire_error
 
 
 class ChannelError(UserError):
@@ -63,3 +65,30 @@ def encode_plainly(item: object) -> bytes:
     """Return the CBOR of null, bool, int, float, text, bytes, or lists and maps of these."""
     encoded: bytes = cbor2.dumps(item)
     return encoded
+
+
+ValueT = TypeVar("ValueT")
+
+
+class Codec(Generic[ValueT]):
+    """Codec of a class with annotated fields: its plain values are maps by the fields' names, or rows."""
+
+    def __init__(self, what: str, kind: Any) -> None:
+        """Name the value `what` in errors; `kind` is its type: a dataclass is a map, a named tuple a row."""
+        self._what = what
+        self._kind = kind
+
+    @cached_property
+    def _adapter(self) -> TypeAdapter[ValueT]:
+        return TypeAdapter(self._kind)  # at first use, because a client of one answer needs no other
+
+    def plain_of(self, value: ValueT) -> Any:
+        """Return maps, lists, texts and finite numbers that `read` accepts. Long texts and lists are cut."""
+        return self._adapter.dump_python(value, by_alias=True)
+
+    def read(self, plain: object) -> ValueT:
+        """Return the value in plain values; other keys of maps are left out. Raises WireError."""
+        try:
+            return self._adapter.validate_python(plain)
+        except ValidationError as error:
+            raise wire_error(self._what, error) from None

@@ -1,20 +1,19 @@
 """World, task and speed of a simulated robot, as sent to its teachers."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
-from kurt2rt.channel.protocol.cbor_schema import LINE, NAME, DataclassCodec, MapOf
 from kurt2rt.channel.protocol.limits import FASTEST
-from kurt2rt.core.teaching.message_fields import Float, Int, ListOf
-
-_MOST_NAMES = 64
+from kurt2rt.channel.protocol.schema import Codec
+from kurt2rt.core.message_fields import Finite, Int, Line, Title, UpTo
 
 
 @dataclass(frozen=True, slots=True)
 class TaskName:
     """A task that the robot can be taught."""
 
-    name: str
-    what: str
+    name: Title
+    what: Line
     """Sentence on the task for the teacher."""
 
 
@@ -22,33 +21,20 @@ class TaskName:
 class SimulationView:
     """Simulated world and task, and those to choose from."""
 
-    world: str
+    world: Title
     """World as chosen: `a`, `rooms-7`, a path."""
-    task: str
-    worlds: tuple[str, ...]
+    task: Title
+    worlds: Annotated[tuple[Title, ...], UpTo(64)]
     """Worlds by name; `rooms-N`, `flats-N`, `streets-N` and `floors-N` are made for any whole number N."""
-    tasks: tuple[TaskName, ...]
-    speed: int = 1
+    tasks: Annotated[tuple[TaskName, ...], UpTo(64)]
+    speed: Annotated[int, Int(1, FASTEST)] = 1
     """Chosen number of robot seconds in one second."""
-    reached: float = 1.0
+    reached: Finite = 1.0
     """Measured number of robot seconds in the last second."""
-    progress: float = 0.0
+    progress: Finite = 0.0
     """Progress of the robot with its task since the run began, in `unit`."""
-    unit: str = ""
+    unit: Title = ""
     """Unit of `progress`: laps, rounds, eights, m; empty if progress is not measured."""
 
 
-SIMULATION = DataclassCodec[SimulationView](
-    "the simulation",
-    MapOf(
-        SimulationView,
-        world=NAME,
-        task=NAME,
-        worlds=ListOf(NAME, most=_MOST_NAMES),
-        tasks=ListOf(MapOf(TaskName, name=NAME, what=LINE), most=_MOST_NAMES),
-        speed=Int(1, FASTEST),
-        reached=Float(1000.0),
-        progress=Float(1e9),
-        unit=NAME,
-    ),
-)
+SIMULATION = Codec[SimulationView]("the simulation", SimulationView)

@@ -3,11 +3,11 @@
 import secrets
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager, suppress
-from typing import Any
 
 import anyio
 
 from kurt2rt.channel.protocol.codec import encode_state
+from kurt2rt.channel.protocol.hello import AppraisalName, Hello, MidIntroduction, SensorPlace
 from kurt2rt.channel.protocol.limits import VERSION
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.server.dependencies import ChannelDependencies
@@ -167,33 +167,34 @@ async def _refresh(teachers: Teachers, runtime: Runtime) -> None:
                     runtime.inbox.put(HandOver(f"{revoked}-release", name))
 
 
-def describe_robot(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any]:
-    """Return the body of /hello, without its tick; `boot` is the id of this start of the program.
+def describe_robot(runtime: Runtime, boot: bytes, *, simulated: bool) -> Hello:
+    """Return the answer to /hello at tick 0; `boot` is the id of this start of the program.
 
     `simulated`: whether the robot is simulated.
     """
     robot, sensors = runtime.robot, runtime.robot.infrared.sensors
     critic = None if runtime.handler.critic is None else runtime.handler.critic.settings
     mid = None if runtime.mid is None else runtime.mid.settings
-    return {
-        "v": VERSION,
-        "boot": boot,
-        "robot": robot.name,
-        "task": runtime.task.name,
-        "radius": runtime.level.system.radius,
-        "period_s": robot.cycle_s,
-        "actions": list(runtime.level.repertoire),
-        "behaviours": list(runtime.active_behaviour.behaviours),
-        "appraisals": [] if critic is None else [[each.name, each.value] for each in critic.appraisals],
-        "trusted_from": 1.0 if critic is None else critic.agreement.bound,
-        "mid": None if mid is None else [mid.situation.kind, len(mid.features), mid.learning.radius],
-        "seeks": runtime.navigator is not None,
-        "sensors": [[each.name, each.label, each.x_m, each.y_m, each.heading_deg] for each in sensors],
-        "outline": [robot.geometry.outline_length_m, robot.geometry.outline_width_m],
-        "track_m": robot.geometry.effective_track_m,
-        "max_m_s": robot.guard.maximum_speed_m_s,
-        "what": runtime.task.sentence,
-        "law": list(infrared_law(robot.infrared)),
-        "simulated": simulated,
-        "phases": {int(phase): phase.name.lower() for phase in Phase},
-    }
+    return Hello(
+        version=VERSION,
+        boot=boot,
+        tick=0,
+        robot=robot.name,
+        task=runtime.task.name,
+        radius=runtime.level.system.radius,
+        period_s=robot.cycle_s,
+        actions=tuple(runtime.level.repertoire),
+        behaviours=tuple(runtime.active_behaviour.behaviours),
+        appraisals=() if critic is None else tuple(AppraisalName(each.name, each.value) for each in critic.appraisals),
+        trusted_from=1.0 if critic is None else critic.agreement.bound,
+        mid=None if mid is None else MidIntroduction(mid.situation.kind, len(mid.features), mid.learning.radius),
+        seeks=runtime.navigator is not None,
+        sensors=tuple(SensorPlace(each.name, each.label, each.x_m, each.y_m, each.heading_deg) for each in sensors),
+        outline=(robot.geometry.outline_length_m, robot.geometry.outline_width_m),
+        track_m=robot.geometry.effective_track_m,
+        max_m_s=robot.guard.maximum_speed_m_s,
+        what=runtime.task.sentence,
+        law=infrared_law(robot.infrared),
+        simulated=simulated,
+        phases=tuple(phase.name.lower() for phase in Phase),
+    )

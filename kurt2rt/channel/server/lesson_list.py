@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 
+from kurt2rt.channel.protocol.lesson_list import Contradicting, LessonLine
 from kurt2rt.channel.protocol.limits import MOST_CONTRADICTIONS
 from kurt2rt.core.outcome import Field
 from kurt2rt.core.rla.contradiction import Contradiction, find_contradiction
@@ -25,24 +26,20 @@ class LessonList:
         self._stamp_of = stamp_of
         self._groups = groups
 
-    def body(self, count: int) -> dict[str, object]:
-        """Return the body of the answer: `lessons`, newest first, at most `count`, and `against` if any contradicts.
+    def newest(self, count: int) -> Iterator[LessonLine]:
+        """Yield the newest lessons, at most `count`, newest first; the lessons of a hold are one line.
 
-        The lessons of a hold are one row.
+        A line tells which of its lessons contradict their neighbours, as long as they are not too many in all.
         """
-        rows: list[list[object]] = []
-        against: list[list[object]] = []
         left = MOST_CONTRADICTIONS
         for command_id, text, records in self._newest(count):
             origin = records[0].event.origin
             stamp = self._stamp_of(origin.command_id)
             undone = all(each.undone for each in records)
-            rows.append([command_id, text, origin.teacher, int(origin.phase), origin.tick, stamp, undone])
-            looked_at = records[:left]
-            left -= len(looked_at)
-            found = (self.contradiction_of(each.event.origin.command_id) for each in looked_at)
-            against += [_row(command_id, each) for each in found if each is not None]
-        return {"lessons": rows, "against": against}
+            found = (self.contradiction_of(each.event.origin.command_id) for each in records[:left])
+            against = tuple(_told(each) for each in found if each is not None)
+            left -= len(records[:left])
+            yield LessonLine(command_id, text, origin.teacher, int(origin.phase), origin.tick, stamp, undone, against)
 
     def fields_of(self, command_id: str) -> dict[str, Field]:
         """Return the fields `against` and `nearest` of the answer to a lesson; none if it contradicts nothing."""
@@ -79,7 +76,6 @@ class LessonList:
             yield hold, hold_text(given), (record, *(each for each in given if each is not record))
 
 
-def _row(listed_as: str, found: Contradiction) -> list[object]:
+def _told(found: Contradiction) -> Contradicting:
     rla = found.rla
-    nearest = found.neighbours[0].rla_id
-    return [listed_as, rla.origin.command_id, rla.rla_id, rla.action, nearest, list(found.actions)]
+    return Contradicting(rla.origin.command_id, rla.rla_id, rla.action, found.neighbours[0].rla_id, found.actions)

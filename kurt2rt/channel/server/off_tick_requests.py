@@ -28,6 +28,7 @@ from kurt2rt.channel.protocol.requests import (
     WorldRequest,
 )
 from kurt2rt.channel.protocol.simulation import SIMULATION
+from kurt2rt.channel.protocol.world import WORLD, WorldView
 from kurt2rt.channel.server.dependencies import ChannelDependencies, TeacherNow
 from kurt2rt.channel.server.failure import WORLD_REFUSALS, failure, known_failure
 from kurt2rt.channel.server.pending_commands import PendingCommands
@@ -318,12 +319,5 @@ class OffTickRequests:
         if self._parts.world is None:
             return not_simulated()
         view = self._parts.world.world()
-        body = {
-            "version": view.version,
-            "name": view.name,
-            "size": list(view.size_m),
-            "outline": [list(corner) for corner in view.outline],
-            "walls": [[wall.name, [list(corner) for corner in wall.corners]] for wall in view.walls],
-            "round": [list(post) for post in view.posts],
-        }
-        return Reply(ReplyStatus.DONE, body)
+        told = WorldView(view.version, view.name, view.size_m, view.outline, view.walls, view.posts)
+        return Reply(ReplyStatus.DONE, WORLD.plain_of(told))

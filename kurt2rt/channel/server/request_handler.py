@@ -5,9 +5,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from kurt2rt.channel.protocol.facts_codec import plain_of_facts
-from kurt2rt.channel.protocol.health_codec import plain_of
-from kurt2rt.channel.protocol.limits import MOST_SITUATIONS
+from kurt2rt.channel.protocol.codec import FACTS
+from kurt2rt.channel.protocol.health import HEALTH
+from kurt2rt.channel.protocol.hello import HELLO, Hello
+from kurt2rt.channel.protocol.lesson_list import LESSONS, SITUATIONS
 from kurt2rt.channel.protocol.request_types import CommandRequest, Request, StreamRequest, TickRequest
 from kurt2rt.channel.protocol.requests import (
     HealthRequest,
@@ -57,7 +58,7 @@ class RequestHandler:
         self,
         runtime: Runtime,
         parts: ChannelDependencies,
-        hello: Mapping[str, Any],
+        hello: Hello,
         *,
         why: Callable[[], DecisionFacts | None] = lambda: None,
         longest_wait_s: float = LONGEST_WAIT_S,
@@ -67,13 +68,13 @@ class RequestHandler:
         Args:
             runtime: The robot.
             parts: Parts of the service.
-            hello: Body of the robot's description, but for the tick.
+            hello: Description of the robot.
             why: Facts of the newest decision; None before it.
             longest_wait_s: Time after which a lesson that is not durable yet is answered as unsaved, in seconds.
         """
         self._runtime = runtime
         self._parts = parts
-        self._hello = hello
+        self._hello: Mapping[str, Any] = HELLO.plain_of(hello)
         self._longest_wait_s = longest_wait_s
         self._why = why
         self._whys = PerDeviceRateLimit(MOST_WHYS, WHY_EVERY_TICKS)
@@ -113,17 +114,17 @@ class RequestHandler:
             case HelloRequest():
                 return Reply(ReplyStatus.DONE, {**self._hello, "tick": self.tick})
             case LessonsRequest(count=count):
-                return Reply(ReplyStatus.DONE, self.lessons.body(count))
+                return Reply(ReplyStatus.DONE, {"lessons": LESSONS.plain_of(tuple(self.lessons.newest(count)))})
             case SituationsRequest():
-                return Reply(ReplyStatus.DONE, {"situations": self._situations()})
+                return Reply(ReplyStatus.DONE, {"situations": SITUATIONS.plain_of(self._situations())})
             case HealthRequest():
                 health = self._parts.health()
-                return Reply(ReplyStatus.DONE, {"health": None if health is None else plain_of(health)})
+                return Reply(ReplyStatus.DONE, {"health": None if health is None else HEALTH.plain_of(health)})
             case WhyRequest():
                 if not self._whys.acquire(sender.device, self.tick):
                     return refusal("refused", Outcome(RefusalCode.TOO_OFTEN), self.tick)
                 facts = self._why()
-                return Reply(ReplyStatus.DONE, {"why": None if facts is None else plain_of_facts(facts)})
+                return Reply(ReplyStatus.DONE, {"why": None if facts is None else FACTS.plain_of(facts)})
         return await self._off_tick.answer(device, request)
 
     def _stream(self, sender: Sender, request: StreamRequest) -> Reply:
@@ -212,5 +213,5 @@ class RequestHandler:
     def _too_many(self) -> Reply:
         return refusal("refused", Outcome(RefusalCode.TOO_MANY), self.tick)
 
-    def _situations(self) -> list[str]:
-        return sorted(self._runtime.level.system.named_situations(MID))[:MOST_SITUATIONS]
+    def _situations(self) -> tuple[str, ...]:
+        return tuple(sorted(self._runtime.level.system.named_situations(MID)))

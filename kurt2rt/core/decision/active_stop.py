@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from config.errors import TextCode
+from kurt2rt.core.message_fields import Line
 
 
 class StopReason(TextCode):
@@ -44,7 +45,7 @@ class ActiveStop(NamedTuple):
     """Stop that lasts until a resume, with the name that its reason is about."""
 
     reason: StopReason
-    name: str = ""
+    name: Line = ""
     """Teacher, behaviour, session, sensor or the guard's code; empty if none is needed."""
 
     @property

@@ -10,6 +10,7 @@ from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop
 from kurt2rt.core.decision.decision import ASKING, BY_KNOWLEDGE, Decision, DecisionCause
+from kurt2rt.core.message_fields import Finite, Line, Truth
 from kurt2rt.core.rla.rla import MID
 
 
@@ -69,13 +70,13 @@ class Standing(NamedTuple):
     """Reason that the robot stands, or DRIVES, and what lets it drive on."""
 
     reason: StandReason = StandReason.DRIVES
-    needs_resume: bool = False
+    needs_resume: Truth = False
     """True if the robot stands until its teacher resumes it."""
-    asks: bool = False
+    asks: Truth = False
     """True if an answer of its teacher lets it drive on."""
-    stall_s: float | None = None
+    stall_s: Finite | None = None
     """Time without a tick before the watchdog braked, in s, for COMPUTER_TOO_SLOW; None otherwise."""
-    says: str = ""
+    says: Line = ""
     """Details that the reason lacks, such as the disk's error."""
     stop: ActiveStop | None = None
     """Actor and kind of the stop, for STOPPED; None otherwise."""

@@ -9,25 +9,17 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from kurt2rt.core.decision.goal import Goal
+from kurt2rt.core.message_fields import Int, Name, Number, OneOf, Truth, UpTo
 from kurt2rt.core.outcome import Code, Outcome
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.message_fields import (
-    LARGEST_NUMBER,
     LONGEST_BEHAVIOUR_TICKS,
     MOST_SEGMENTS,
     SLOWEST_PERCENT,
     GoalField,
-    Int,
     Level,
-    ListOf,
-    Name,
-    NameOrNone,
-    Number,
-    NumberOrNone,
-    OneOf,
     PhaseNumber,
     Speed,
-    Truth,
 )
 
 
@@ -113,7 +105,7 @@ class Teach(SingleCommand):
     path: ClassVar[str] = "/answer"
     action: Name
     """Name in the repertoire; at the mid level a taught behaviour."""
-    decision_tick: NumberOrNone = None
+    decision_tick: Number | None = None
     """Tick of the situation; None: the present one."""
     level: Level = BASIC
     """Level of the situation: BASIC, or MID if the robot has a mid level."""
@@ -134,7 +126,7 @@ class Correct(SingleCommand):
 
     path: ClassVar[str] = "/correct"
     action: Name
-    decision_tick: NumberOrNone = None
+    decision_tick: Number | None = None
     """Tick of the wrong decision; None: the present one."""
     level: Level = BASIC
     """Level of the wrong decision, as in `Teach`."""
@@ -152,7 +144,7 @@ class TeachShown(SingleCommand):
     path: ClassVar[str] = "/shown"
     press_id: Number
     """Press of the demonstration."""
-    segments: Annotated[tuple[int, ...], ListOf(Int(0, LARGEST_NUMBER), most=MOST_SEGMENTS)]
+    segments: Annotated[tuple[Number, ...], UpTo(MOST_SEGMENTS)]
     """Indexes of the published segments that are right."""
 
 
@@ -186,7 +178,7 @@ class Reward(SingleCommand):
 
     path: ClassVar[str] = "/reward"
     value: Annotated[int, OneOf((1, -1))]
-    decision_tick: NumberOrNone = None
+    decision_tick: Number | None = None
     """Tick of the decision; None: the present one."""
 
 
@@ -197,7 +189,7 @@ class Appraise(SingleCommand):
     path: ClassVar[str] = "/appraise"
     appraisal: Name
     """Name in the critic's repertoire: bad, neutral, good."""
-    decision_tick: NumberOrNone = None
+    decision_tick: Number | None = None
     """Tick of the situation; None: the present one."""
 
 
@@ -209,7 +201,7 @@ class Undo(SingleCommand):
     """Undo a lesson: its RLA, name or reward is as before."""
 
     path: ClassVar[str] = "/undo"
-    lesson: NameOrNone = None
+    lesson: Name | None = None
     """Command id of the lesson; None: the last lesson that stands."""
 
 
@@ -234,7 +226,7 @@ class NameSituation(SingleCommand):
     path: ClassVar[str] = "/name"
     name: Name
     """New or existing name; an existing one moves to this situation."""
-    decision_tick: NumberOrNone = None
+    decision_tick: Number | None = None
     """Tick of the situation; None: the present one."""
 
 
@@ -318,7 +310,7 @@ class HandOver(SingleCommand):
     """Give up control authority, to another teacher or to anyone."""
 
     path: ClassVar[str] = "/release"
-    to: NameOrNone = None
+    to: Name | None = None
     """Next teacher; None: the first one that commands."""
 
 
@@ -330,7 +322,7 @@ class Stop(SingleCommand):
     """
 
     path: ClassVar[str] = "/stop"
-    press_id: NumberOrNone = None
+    press_id: Number | None = None
     """Press id that ends; a later press goes on. None: stop all motion. After a press of `HoldAction` the robot
     goes on by its RLAs."""
 

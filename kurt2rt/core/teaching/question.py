@@ -3,23 +3,24 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.core.basic.doubt import NewObstacle
+from kurt2rt.core.message_fields import Finite, Word
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.rla import ASK, MID, rla_title
 
 
-@dataclass(frozen=True, slots=True)
-class FeatureDifference:
+class FeatureDifference(NamedTuple):
     """Feature in which the situation differs from the nearest RLA's condition."""
 
-    name: str
-    here: float
-    in_condition: float
+    name: Word
+    here: Finite
+    in_condition: Finite
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,28 +2,36 @@
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 from hal.robot import WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop
+from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.message_fields import Int, Line, Number, OneOf, OrNotFinite, Share, Time, Title, Truth, UpTo
 
 MOST_OTHERS = 12
 """RLAs of a level that are sent in addition to the nearest: the next nearest."""
+
+MOST_FEATURES = 512
+PhaseInt = Annotated[int, Int(1, 5)]
+Distance = Annotated[Time, OrNotFinite(math.inf)]
+Names = Annotated[tuple[Title, ...], UpTo(MOST_FEATURES)]
 
 
 @dataclass(frozen=True, slots=True)
 class LessonFact:
     """One lesson about an RLA, undone or not."""
 
-    text: str
+    text: Line
     """Lesson in words, such as: RLA 17 corrected: forward instead of spin_left."""
-    teacher: str
-    phase: int
-    tick: int
+    teacher: Title
+    phase: PhaseInt
+    tick: Number
     """Tick number in the run in which it was taught."""
-    stamp: str
+    stamp: Title
     """UTC time of writing, ISO 8601; empty if unknown."""
-    undone: bool = False
-    changes: bool = True
+    undone: Truth = False
+    changes: Truth = True
     """True if the lesson is part of the present action: not undone and no reward."""
 
 
@@ -31,27 +39,27 @@ class LessonFact:
 class RlaFacts:
     """One RLA: its action, its lessons and its usage."""
 
-    rla_id: int
-    title: str
-    action: str
-    condition: tuple[float, ...]
+    rla_id: Number
+    title: Title
+    action: Title
+    condition: Annotated[tuple[Time, ...], UpTo(MOST_FEATURES)]
     """Shape (d,)."""
-    distance: float
+    distance: Distance
     """Weighted distance to the situation of the decision; infinite if the robot did not know its place."""
-    radius: float
-    acts: tuple[LessonFact, ...]
+    radius: Time
+    acts: Annotated[tuple[LessonFact, ...], UpTo(32)]
     """Oldest first."""
-    uses: int
+    uses: Number
     """Number of times it started to drive since it was first taught."""
-    uses_since: int | None
+    uses_since: Number | None
     """Number of times it started to drive with its present action; None if unknown."""
-    rewards: int
-    punishments: int
-    value: float | None
+    rewards: Number
+    punishments: Number
+    value: Time | None
     """Value learnt from rewards; None without rewards."""
-    asks: bool
+    asks: Truth
     """True if its action was withdrawn."""
-    leads: bool = True
+    leads: Truth = True
     """True if it is the one that answers among the RLAs on its condition."""
 
 
@@ -59,30 +67,30 @@ class RlaFacts:
 class LevelFacts:
     """Match of one level of the robot in one tick."""
 
-    level: str
-    behaviour: str
+    level: Title
+    behaviour: Title
     """Taught behaviour whose RLAs competed; empty if there is only one."""
-    names: tuple[str, ...]
+    names: Names
     """Feature names, shape (d,)."""
-    vector: tuple[float, ...]
+    vector: Annotated[tuple[Annotated[Time, OrNotFinite(math.nan)], ...], UpTo(MOST_FEATURES)]
     """Situation, shape (d,)."""
-    weights: tuple[float, ...]
+    weights: Annotated[tuple[Time, ...], UpTo(MOST_FEATURES)]
     """Weight of each feature in a distance, shape (d,)."""
-    euclidean: bool
+    euclidean: Truth
     """False for symbols: a distance counts the places that differ."""
     nearest: RlaFacts | None
     """None before the first lesson."""
     driver: RlaFacts | None
     """RLA whose action was followed; None if there was none."""
-    others: tuple[RlaFacts, ...]
+    others: Annotated[tuple[RlaFacts, ...], UpTo(MOST_OTHERS)]
     """RLAs after the nearest in order of distance; the first is the runner-up."""
-    count: int
+    count: Number
     """Number of RLAs that competed."""
-    words: tuple[str, ...] = ()
+    words: Names = ()
     """Situation in words; empty if the level has none."""
-    nearest_words: tuple[str, ...] = ()
+    nearest_words: Names = ()
     """Condition of the nearest RLA in words."""
-    radius_share: float = 1.0
+    radius_share: Share = 1.0
     """Fraction of R within which RLAs answer; below 1 while the robot is taught and asks sooner."""
     passed_over: RlaFacts | None = None
     """RLA nearer than the nearest, which does not answer because no teacher can be asked; None without one."""
@@ -124,12 +132,12 @@ class LevelFacts:
 class ContactFacts:
     """Remembered obstacle that an action would meet."""
 
-    action: str
-    within_s: float
+    action: Title
+    within_s: Time
     """Time until the outline would meet the obstacle."""
-    sensor: str
+    sensor: Title
     """Position and name of the sensor that saw the obstacle, such as `front left (s9)`."""
-    seen_s: float
+    seen_s: Time
     """Age of that look, in s of driving."""
 
 
@@ -137,14 +145,14 @@ class ContactFacts:
 class DoubtFacts:
     """Doubt about the action of the nearest RLA, and the sensor that causes most of it."""
 
-    score: float
-    threshold: float
+    score: Time
+    threshold: Time
     """Score from which the robot asks."""
-    sensor: str = ""
+    sensor: Title = ""
     """Position of the sensor ahead that sees an obstacle nearer than lessons that drive on; empty without one."""
-    reads: str = ""
+    reads: Title = ""
     """Its reading in words, such as 13 cm."""
-    taught: str = ""
+    taught: Title = ""
     """Reading that all such lessons but at most one reach or stay beyond, in words."""
     contact: ContactFacts | None = None
     """Remembered obstacle that the action would meet; None without one."""
@@ -154,51 +162,51 @@ class DoubtFacts:
 class DecisionFacts:
     """Decision of one tick with the facts it rested on."""
 
-    tick: int
-    now_s: float
+    tick: Number
+    now_s: Time
     """Time of the runtime's clock."""
-    robot: str
-    task: str
-    phase: int
-    cause: str
+    robot: Title
+    task: Title
+    phase: PhaseInt
+    cause: Annotated[str, OneOf(tuple(cause.value for cause in DecisionCause))]
     """A value of kurt2rt.core.decision.decision.DecisionCause."""
-    action: str | None
+    action: Title | None
     """Action that drove; None if the robot stood."""
-    asks_at: str
+    asks_at: Title
     """Level that asked, if one did."""
     decided: WheelSpeeds
     granted: WheelSpeeds
-    reasons: tuple[str, ...]
+    reasons: Names
     """Reasons of the guard for changing the decision."""
-    latched: bool
+    latched: Truth
     """True if the guard kept the robot stopped."""
     stopped: ActiveStop | None
     """Stop that holds until a teacher resumes; None without one."""
-    trouble: str
+    trouble: Line
     """Reason why lessons could not be saved; empty if they could."""
-    teacher: str
+    teacher: Title
     """Present teacher; empty without one."""
-    infrared_counts: tuple[int, ...]
+    infrared_counts: Annotated[tuple[Number, ...], UpTo(64)]
     """Counts that the robot decided by; those of broken sensors come from their neighbours."""
-    infrared_age_s: float
+    infrared_age_s: Distance
     basic: LevelFacts
     mid: LevelFacts | None
     """None if the task has no mid level."""
-    overridden: bool
+    overridden: Truth
     """True if a teacher commanded the behaviour instead of the mid level."""
-    plan_says: str
+    plan_says: Line
     """Status of the goal in words; empty without one."""
-    kept: str = ""
+    kept: Title = ""
     """Action held for its minimum time, which no other action could replace; empty if none was."""
-    history_frozen: bool = True
+    history_frozen: Truth = True
     """True if the averages of the situation were not updated."""
-    taught_now: bool = False
+    taught_now: Truth = False
     """True if a lesson was applied in this tick."""
-    broken_sensors: tuple[str, ...] = ()
+    broken_sensors: Names = ()
     """Infra-red sensors that do not count, by position and name, such as `front left edge (s15)`."""
-    hindrances: tuple[str, ...] = ()
+    hindrances: Names = ()
     """Causes that would have stopped the robot without a stop or manual driving: values of DecisionCause."""
     doubt: DoubtFacts | None = None
     """None if the robot has no score of doubt, and at a standstill for another reason."""
-    lesson_speed: float = 1.0
+    lesson_speed: Share = 1.0
     """Fraction of the decided speeds that was asked of the guard; below 1 in a slow lesson."""

@@ -3,11 +3,12 @@
 import json
 import math
 from collections.abc import Callable
+from dataclasses import MISSING, fields
 from enum import Enum
 from functools import cache
 from typing import Any, get_args, get_origin, get_type_hints
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import BaseModel, ValidationError, create_model
 
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Command
@@ -17,9 +18,7 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
 
-_ADAPTERS: dict[str, TypeAdapter[Any]] = {
-    kind.__name__: TypeAdapter(kind) for kind in (*get_args(Command), *get_args(SystemEvent))
-}
+_INPUTS: dict[str, type[Input]] = {kind.__name__: kind for kind in (*get_args(Command), *get_args(SystemEvent))}
 _KEYS = {"wheel_speeds": "wheels"}
 """Keys of fields that are named otherwise in JSON."""
 
@@ -113,43 +112,53 @@ def _decoder(hint: Any) -> Callable[[Any], Any]:
 
 def _named_tuple_decoder(kind: Any) -> Callable[[Any], Any]:
     """Return the decoder of a named tuple. Absent fields may be those that may be None, and tuples, which are empty."""
-    fields = []
+    decoders = []
     for name, hint in get_type_hints(kind).items():
         absent: tuple[Any, ...] = (
             ((),) if get_origin(hint) is tuple else (None,) if type(None) in get_args(hint) else ()
         )
-        fields.append((_KEYS.get(name, name), _decoder(hint), absent))
+        decoders.append((_KEYS.get(name, name), _decoder(hint), absent))
 
     def decode(content: dict[str, Any]) -> Any:
         return kind(
-            *(decoder(content.get(key, *absent) if absent else content[key]) for key, decoder, absent in fields)
+            *(decoder(content.get(key, *absent) if absent else content[key]) for key, decoder, absent in decoders)
         )
 
     return decode
 
 
+@cache
+def _fields_of(name: str) -> type[BaseModel]:
+    """Return a command's fields without the ranges of the wire, which other senders may exceed."""
+    kind: Any = _INPUTS[name]
+    hints = get_type_hints(kind)
+    own: dict[str, Any] = {
+        each.name: (hints[each.name], ... if each.default is MISSING else each.default) for each in fields(kind)
+    }
+    return create_model(name, **own)
+
+
 def encode_command(command: Input) -> dict[str, Any]:
     """Return a JSON object: the name of the class as `is`, then the fields."""
     name = type(command).__name__
-    return {"is": name, **_finite(_ADAPTERS[name].dump_python(command, mode="json"))}
+    own = {each.name: getattr(command, each.name) for each in fields(command)}
+    return {"is": name, **_finite(_fields_of(name).model_construct(**own).model_dump(mode="json"))}
 
 
 def decode_command(content: object) -> Input:
     """Return the command that `encode_command` wrote, equal to the last bit. Raises RecordingError."""
     if not isinstance(content, dict):
         raise RecordingError(f"a {type(content).__name__} is no command")
-    fields = dict(content)
-    name = fields.pop("is", None)
-    adapter = _ADAPTERS.get(name) if isinstance(name, str) else None
-    if adapter is None:
+    own = dict(content)
+    name = own.pop("is", None)
+    if not isinstance(name, str) or name not in _INPUTS:
         raise RecordingError(f"there is no command {name!r}")
     try:
-        command: Input = adapter.validate_python(fields, strict=False)
+        return _INPUTS[name](**dict(_fields_of(name).model_validate(own)))
     except ValidationError as error:
         problem = error.errors(include_url=False)[0]
         place = ".".join(map(str, problem["loc"]))
         raise RecordingError(f"{place}: {problem['msg']}", where=name) from error
-    return command
 
 
 def _finite(value: Any) -> Any:

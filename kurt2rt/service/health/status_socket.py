@@ -12,9 +12,8 @@ from pathlib import Path
 import anyio
 from anyio.abc import Listener, SocketStream
 
-from kurt2rt.channel.protocol.health import HealthReport
-from kurt2rt.channel.protocol.health_codec import plain_of, report_of
-from kurt2rt.core.teaching.message_fields import WireError
+from kurt2rt.channel.protocol.health import HEALTH, HealthReport
+from kurt2rt.core.message_fields import WireError
 from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.health.status_error import StatusCode, StatusError
 
@@ -74,7 +73,9 @@ class StatusSocket:
                     report, news = self._watch.newest, self._news
                     if report is not None:
                         with anyio.fail_after(_TAKEN_WITHIN_S):
-                            await reader.send(json.dumps({**plain_of(report), _PAGES: self._pages()}).encode() + b"\n")
+                            await reader.send(
+                                json.dumps({**HEALTH.plain_of(report), _PAGES: self._pages()}).encode() + b"\n"
+                            )
                     await news.wait()
         except (anyio.BrokenResourceError, anyio.ClosedResourceError, TimeoutError):
             return  # gone or slow
@@ -134,7 +135,7 @@ def read_reports(path: Path, patience_s: float) -> Iterator[HealthReport]:
                 told = json.loads(line)
                 if isinstance(told, dict) and _WAITS_FOR in told:
                     raise StatusError(StatusCode.WAITS, missing=told[_WAITS_FOR])
-                yield replace(report_of(told), pages=_links_in(told))
+                yield replace(HEALTH.read(told), pages=_links_in(told))
             except (ValueError, WireError) as error:
                 raise StatusError(StatusCode.NOT_UNDERSTOOD, where=path, error=error) from error
 

@@ -13,15 +13,14 @@ from types import TracebackType
 from typing import Self
 
 from kurt2rt.channel.protocol import requests
+from kurt2rt.channel.protocol.codec import FACTS
 from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
-from kurt2rt.channel.protocol.facts_codec import facts_of_plain
-from kurt2rt.channel.protocol.health import HealthReport
-from kurt2rt.channel.protocol.health_codec import report_of
+from kurt2rt.channel.protocol.health import HEALTH, HealthReport
 from kurt2rt.channel.protocol.hello import Hello, hello_of
-from kurt2rt.channel.protocol.lesson_list import LessonLine, lesson_lines_of, situations_of
+from kurt2rt.channel.protocol.lesson_list import LESSONS, SITUATIONS, LessonLine
 from kurt2rt.channel.protocol.simulation import SIMULATION, SimulationView
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.channel.protocol.world import WorldView, world_of
+from kurt2rt.channel.protocol.world import WORLD, WorldView
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.connection import Connection, open_connection
@@ -135,26 +134,30 @@ class ObserverClient:
     async def health(self) -> HealthReport | None:
         """Return the health of the robot's program; None in its first second. Raises NoAnswerError."""
         return await self._open.sender.query(
-            requests.HealthRequest(), lambda body: None if body.get("health") is None else report_of(body["health"])
+            requests.HealthRequest(), lambda body: None if body.get("health") is None else HEALTH.read(body["health"])
         )
 
     async def why(self) -> DecisionFacts | None:
         """Return the facts behind the robot's newest decision; None before its first tick. Raises NoAnswerError."""
         return await self._open.sender.query(
-            requests.WhyRequest(), lambda body: None if body.get("why") is None else facts_of_plain(body["why"])
+            requests.WhyRequest(), lambda body: None if body.get("why") is None else FACTS.read(body["why"])
         )
 
     async def world(self) -> WorldView | None:
         """Return the simulated world; None for a real robot. Raises NoAnswerError."""
-        return await self._open.sender.query_simulated(requests.WorldRequest(), world_of)
+        return await self._open.sender.query_simulated(requests.WorldRequest(), WORLD.read)
 
     async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
         """Return the newest lessons, newest first; `count` is at most 20. Raises NoAnswerError."""
-        return await self._open.sender.query(requests.LessonsRequest(count), lesson_lines_of)
+        return await self._open.sender.query(
+            requests.LessonsRequest(count), lambda body: LESSONS.read(body.get("lessons"))
+        )
 
     async def situations(self) -> tuple[str, ...]:
         """Return the names that situations of the mid level have, sorted. Raises NoAnswerError."""
-        return await self._open.sender.query(requests.SituationsRequest(), situations_of)
+        return await self._open.sender.query(
+            requests.SituationsRequest(), lambda body: SITUATIONS.read(body.get("situations"))
+        )
 
     async def exam(self) -> ExamStatus | None:
         """Return the status of the newest exam; None for a robot that is not simulated in its own program.

@@ -13,9 +13,9 @@ from kurt2rt.channel.protocol.limits import COMMAND_ID_BYTES, PART_BYTES
 from kurt2rt.channel.protocol.request_types import CommandRequest, Request, tick_request
 from kurt2rt.channel.protocol.requests import StopRequest
 from kurt2rt.channel.protocol.state import State
+from kurt2rt.core.message_fields import Number, check_of
 from kurt2rt.core.outcome import RefusalCode
 from kurt2rt.core.teaching.commands import Single
-from kurt2rt.core.teaching.message_fields import LARGEST_NUMBER, Int
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError, RefusedError, answer_of, local_refusal
 from kurt2rt.teacher.client.state_stream import StateStream
@@ -175,4 +175,4 @@ def _file_part_in(response: Response) -> FilePart:
     content = body.get("part")
     if not isinstance(content, bytes) or len(content) > PART_BYTES:
         raise WireError(f"part has to be up to {PART_BYTES} bytes")
-    return FilePart(Int(0, LARGEST_NUMBER)("size", body.get("size")), content)
+    return FilePart(check_of(Number)("size", body.get("size")), content)

@@ -17,8 +17,8 @@ from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from kurt2rt.channel.protocol.limits import MOST_UPLOAD_BYTES, UPLOAD_ID_BYTES
+from kurt2rt.core.message_fields import WireError
 from kurt2rt.core.outcome_text import Surface
-from kurt2rt.core.teaching.message_fields import WireError
 from kurt2rt.teacher.client.answer import NoAnswerError, RefusedError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.access import Access

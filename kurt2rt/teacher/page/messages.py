@@ -7,14 +7,15 @@ from typing import Annotated, Any, get_args
 
 from kurt2rt.channel.protocol.codec import PATHS
 from kurt2rt.channel.protocol.request_types import CommandRequest
+from kurt2rt.core.message_fields import Bytes, Check, Float, Int, Name, WireError, checks_of
 from kurt2rt.core.teaching.commands import Single
-from kurt2rt.core.teaching.message_fields import Bytes, Check, Float, Int, Name, OrNone, Speed, WireError, checks_of
+from kurt2rt.core.teaching.message_fields import Speed
 
 LONGEST_MESSAGE = 1024
 """Length limit, in characters."""
 
 Counter = Annotated[int, Int(1, 2**53)]
-Picture = Annotated[int | None, OrNone(Int(1, 2**53))]
+Picture = Counter | None
 """Number of the state on the page's screen; None before the first."""
 
 
@@ -141,7 +142,7 @@ def _command_fields(kind: type[Single | CommandRequest], content: object) -> dic
 
 
 def _bytes_in(check: Check, value: object) -> object:
-    if not isinstance(check, Bytes) or not isinstance(value, str):
+    if not isinstance(value, str) or not any(isinstance(each, Bytes) for each in get_args(check.hint)):
         return value
     try:
         return bytes.fromhex(value)

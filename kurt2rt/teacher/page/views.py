@@ -12,7 +12,7 @@ from kurt2rt.channel.protocol.health_text import headline, name_of, rows_of, tro
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.simulation import SIMULATION, SimulationView
-from kurt2rt.channel.protocol.state import State
+from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
 from kurt2rt.channel.protocol.world import WorldView
 from kurt2rt.core.decision.standing import GO_ON_PAGE, standing_headline
 from kurt2rt.core.outcome_text import Surface
@@ -20,6 +20,7 @@ from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.teaching.question import FeatureDifference
 from kurt2rt.teacher.client.answer import Answer
 from kurt2rt.teacher.client.link_quality import LinkQuality
+from simbridge.contracts.simulation import SimulatedPlace
 
 _SPEED_CHANGES = (GuardReason.SLEW_LIMIT, GuardReason.SPEED_LIMIT)
 """Limits that every change of speed meets; the page leaves them out."""
@@ -46,7 +47,7 @@ def state_view(
         refused: reason why the last press does not drive, if any.
         words: for the robot's sensors.
     """
-    place, stands = state.place, state.standing
+    stands = state.standing
     return {
         "kind": "state",
         **{name: getattr(state, name) for name in _COPIED},
@@ -61,11 +62,11 @@ def state_view(
         "question": [_difference(each, words) for each in state.question],
         "stopped": None if state.stopped is None else state.stopped.reason,
         "guard": [reason for reason in state.guard if reason not in _SPEED_CHANGES],
-        "mid": plain(state.mid),
-        "surprise": plain(state.surprise),
-        "shown": plain(state.shown),
-        "hold": plain(state.hold),
-        "place": None if place is None else asdict(place),
+        "mid": _row_view(state.mid),
+        "surprise": _row_view(state.surprise),
+        "shown": _row_view(state.shown),
+        "hold": _row_view(state.hold),
+        "place": _row_view(state.place),
         "progress": asdict(state.progress),
         "link": {
             "age_ms": round(age_s * 1000),
@@ -74,6 +75,10 @@ def state_view(
         },
         "refused": refused,
     }
+
+
+def _row_view(row: MidState | SurpriseState | ShownState | HoldState | SimulatedPlace | None) -> Any:
+    return None if row is None else plain(row._asdict())
 
 
 def _difference(each: FeatureDifference, words: SensorWords) -> list[Any]:

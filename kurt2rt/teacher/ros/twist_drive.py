@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from hal.robot import STANDSTILL, WheelSpeeds
-from kurt2rt.core.teaching.message_fields import WireError
+from kurt2rt.core.message_fields import WireError
 from kurt2rt.ros.messages import Twist
 from kurt2rt.teacher.client.client import TeacherClient
 

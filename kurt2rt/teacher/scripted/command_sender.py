@@ -1,5 +1,6 @@
 """Sender of a scripted teacher's commands over the channel; it knows the robot's ids of the teacher's own lessons."""
 
+from kurt2rt.core.message_fields import checks_of
 from kurt2rt.core.rla.lesson_history import hold_id
 from kurt2rt.core.rla.rla import SCRIPTED
 from kurt2rt.core.teaching.commands import (
@@ -12,7 +13,6 @@ from kurt2rt.core.teaching.commands import (
     Teach,
     Undo,
 )
-from kurt2rt.core.teaching.message_fields import checks_of
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
 

@@ -18,6 +18,7 @@ from kurt2rt.channel.protocol.request_types import CommandRequest
 from kurt2rt.channel.protocol.requests import ExportRequest, SaveRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.decision import ASKING
+from kurt2rt.core.message_fields import Check, checks_of
 from kurt2rt.core.outcome_text import Surface
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import CRITIC, Phase
@@ -32,7 +33,6 @@ from kurt2rt.core.teaching.commands import (
     Take,
     Teach,
 )
-from kurt2rt.core.teaching.message_fields import Check, checks_of
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.terminal.mid_commands import mid_command

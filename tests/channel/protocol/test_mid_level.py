@@ -37,10 +37,10 @@ async def teach(desk: ChannelFixture, way: str, *, alternative: bool = False) ->
 
 async def test_situations_are_named_listed_sought_and_undone(desk: ChannelFixture) -> None:
     await teach(desk, "turn_left")
-    assert (await desk.ask(SituationsRequest())).body == {"situations": []}
+    assert (await desk.ask(SituationsRequest())).body == {"situations": ()}
     reply = await desk.ask(desk.command(NameSituation, "door", None))
     assert outcome_of(reply) == Outcome.of(ResultCode.SITUATION_NAMED, name="door")
-    assert (await desk.ask(SituationsRequest())).body == {"situations": ["door"]}
+    assert (await desk.ask(SituationsRequest())).body == {"situations": ("door",)}
     await desk.ask(desk.answer("forward"))
     assert (await desk.ask(desk.command(Seek, NamedGoal("door")))).status is ReplyStatus.DONE
     await desk.stream(desk.watch())
@@ -66,7 +66,7 @@ async def test_situations_are_named_listed_sought_and_undone(desk: ChannelFixtur
         assert why(await desk.ask(request)) == "refused"
     for _ in range(2):  # how to turn left, and the name
         await desk.ask(desk.command(Undo, None))
-    assert (await desk.ask(SituationsRequest())).body == {"situations": []}
+    assert (await desk.ask(SituationsRequest())).body == {"situations": ()}
 
 
 async def test_surprise_between_states_is_told(desk: ChannelFixture) -> None:

@@ -3,28 +3,17 @@
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, get_args, get_origin
 
 import cbor2
 import pytest
 
 from kurt2rt.channel.protocol.codec import BODIES, PATHS, encode_state
-from kurt2rt.channel.protocol.health_codec import plain_of
+from kurt2rt.channel.protocol.health import HEALTH
 from kurt2rt.channel.protocol.limits import VERSION
 from kurt2rt.core.decision.standing import Standing, StandReason
-from kurt2rt.core.teaching.message_fields import (
-    Bytes,
-    BytesUpTo,
-    Flag,
-    Float,
-    GoalField,
-    Int,
-    ListOf,
-    OneOf,
-    OneWord,
-    OrNone,
-    Text,
-)
+from kurt2rt.core.message_fields import Bytes, BytesUpTo, Flag, Float, Int, OneOf, Text, UpTo
+from kurt2rt.core.teaching.message_fields import GoalField
 from tests.channel.jumping_loop import run_jumping
 from tests.channel.robot_at_work import robot_at_work
 from tests.channel.states import COMMANDS, HELD, SHOWN, SURPRISED, state
@@ -32,7 +21,7 @@ from tests.service.health.reports import ILL
 
 TEXT = (Path(__file__).parents[3] / "docs" / "the-wire.md").read_text(encoding="utf-8")
 STATE = TEXT[TEXT.index("### The state") : TEXT.index("### Requests")]
-HEALTH = TEXT[TEXT.index("### Health") : TEXT.index("### Versions")]
+HEALTH_PART = TEXT[TEXT.index("### Health") : TEXT.index("### Versions")]
 SAID = TEXT[TEXT.index("### Requests") : TEXT.index("### Versions")]
 
 
@@ -80,7 +69,12 @@ def ranges() -> dict[str, str]:
     }
 
 
-def in_words(check: object) -> str:
+def in_words(hint: Any) -> str:
+    """Return the allowed values of an annotated type."""
+    if get_origin(hint) is not Annotated:
+        (inner,) = (each for each in get_args(hint) if each is not type(None))
+        return f"{in_words(inner)}, or null"
+    kind, check = get_args(hint)
     match check:
         case Bytes(length):
             return f"{length} bytes"
@@ -92,19 +86,15 @@ def in_words(check: object) -> str:
             return f"number, {-most:g} to {most:g} {unit}".strip()
         case Text(most, least):
             return f"text, {least} to {most} printable characters"
-        case OneWord(words):
-            return " or ".join(words)
-        case OneOf(numbers):
-            return " or ".join(filter(None, (", ".join(map(str, numbers[:-1])), str(numbers[-1]))))
+        case OneOf(values):
+            return " or ".join(filter(None, (", ".join(map(str, values[:-1])), str(values[-1]))))
         case Flag():
             return "true or false"
-        case OrNone(inner):
-            return f"{in_words(inner)}, or null"
         case GoalField():
             features = "`[features, tolerance]`: up to 16 `[name, value]`, and a number; numbers -1e+06 to 1e+06"
             return f"`name`; `rla`; or {features}"
-        case ListOf(inner, most):
-            return f"list of up to {most}: {in_words(inner)}"
+        case UpTo(most):
+            return f"list of up to {most}: {in_words(get_args(kind)[0])}"
     raise AssertionError(check)
 
 
@@ -113,7 +103,7 @@ def test_the_range_of_every_place_is_written(path: str) -> None:
     written = ranges()
     for word, check in zip(bodies()[path], BODIES[path].values(), strict=True):
         name = word.removesuffix(" or null")
-        takes = in_words(check)
+        takes = in_words(check.hint)
         if name != word:
             takes = takes.removesuffix(", or null")
         if path == "/file" and name == "name":
@@ -149,8 +139,8 @@ def keys_in(plain: object) -> Iterator[str]:
 
 
 def test_every_key_of_the_health_report_is_explained() -> None:
-    keys = set(keys_in(plain_of(ILL)))
-    explained = set(re.findall(r"`(\w+)`", HEALTH))
+    keys = set(keys_in(HEALTH.plain_of(ILL)))
+    explained = set(re.findall(r"`(\w+)`", HEALTH_PART))
     assert keys <= explained, keys - explained
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from kurt2rt.channel.protocol.codec import PATHS, decode_answer, encode_answer
 from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
-from kurt2rt.channel.protocol.lesson_list import Contradicting, lesson_lines_of
+from kurt2rt.channel.protocol.lesson_list import LESSONS, Contradicting
 from kurt2rt.channel.protocol.request_types import CommandRequest, TickRequest
 from kurt2rt.channel.protocol.requests import (
     BackToStartRequest,
@@ -33,6 +33,7 @@ from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.channel.server.request_handler import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.message_fields import checks_of
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.teaching.commands import (
     BeginSession,
@@ -47,7 +48,6 @@ from kurt2rt.core.teaching.commands import (
     Teach,
     Undo,
 )
-from kurt2rt.core.teaching.message_fields import checks_of
 from kurt2rt.platform.simulated_clock import SimulatedClock
 from tests.channel.channel_fixture import BOOT, ChannelFixture, outcome_of, reply_of, turns, why
 from tests.channel.grounds import Yard
@@ -526,18 +526,18 @@ async def test_lesson_that_contradicts_its_neighbours_is_named(desk: ChannelFixt
     for counts in (100, 110, 120, 140, 150):
         desk.run(counts=counts)
         await desk.ask(desk.answer("forward"))
-    assert (await desk.ask(LessonsRequest(20))).body["against"] == []
+    assert not any(each[-1] for each in (await desk.ask(LessonsRequest(20))).body["lessons"])
     desk.run(counts=131)
     slip = desk.answer("back")
     taught = outcome_of(await desk.ask(slip))
     assert taught is not None
     assert (taught.fields["against"], taught.fields["nearest"]) == (("forward",), 4)
     listed = decode_answer(encode_answer((await desk.ask(LessonsRequest(20))).body))
-    lesson, *others = lesson_lines_of(listed)
+    lesson, *others = LESSONS.read(listed["lessons"])
     assert lesson.against == (Contradicting(lesson.command_id, 6, "back", 4, ("forward",)),)
     assert not any(each.against for each in others)
     await desk.ask(desk.command(Undo, lesson.command_id))
-    assert (await desk.ask(LessonsRequest(20))).body["against"] == []
+    assert not any(each[-1] for each in (await desk.ask(LessonsRequest(20))).body["lessons"])
 
 
 async def test_press_on_old_state_is_accepted_but_does_not_drive(desk: ChannelFixture) -> None:

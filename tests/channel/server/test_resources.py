@@ -215,7 +215,7 @@ async def test_site_internal_error_is_counted_and_next_request_works(
 
     phone = school.phone()
     with monkeypatch.context() as patch:
-        patch.setattr(school.desk.handler.lessons, "body", fail)
+        patch.setattr(school.desk.handler.lessons, "newest", fail)
         answer = await phone.post(LessonsRequest(3))
     assert (answer.code, school.site.failures) == (aiocoap.INTERNAL_SERVER_ERROR, 1)
     assert (await phone.post(LessonsRequest(3))).code == aiocoap.CHANGED

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from kurt2rt.channel.protocol.facts_codec import facts_of_plain, plain_of_facts
+from kurt2rt.channel.protocol.codec import FACTS
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task
@@ -55,6 +55,6 @@ def test_run_standing_in_doubt_is_replayed_and_explained(tmp_path: Path) -> None
         causes.append(entry.decision.cause)
         if entry.decision.cause is DecisionCause.DOUBT:
             facts = collect_facts(replay.runtime, record, lambda _: "")
-            assert facts_of_plain(plain_of_facts(facts)) == facts
+            assert FACTS.read(FACTS.plain_of(facts)) == facts
             assert re.search(r"forward would meet in .* what front", format_reasons(facts)[0])
     assert causes[-1] is DecisionCause.DOUBT

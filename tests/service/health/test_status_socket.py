@@ -12,8 +12,7 @@ import anyio
 import anyio.to_thread
 import pytest
 
-from kurt2rt.channel.protocol.health import HealthReport
-from kurt2rt.channel.protocol.health_codec import plain_of
+from kurt2rt.channel.protocol.health import HEALTH, HealthReport
 from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.health.status_error import StatusCode, StatusError
 from kurt2rt.service.health.status_socket import (
@@ -141,7 +140,7 @@ def test_one_that_says_nothing_hangs(path: Path) -> None:
 
 
 def test_another_version_is_not_guessed_at(path: Path) -> None:
-    plain = plain_of(WELL)
+    plain = HEALTH.plain_of(WELL)
     del plain["machine"]
 
     def answer() -> None:

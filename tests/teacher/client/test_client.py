@@ -73,7 +73,7 @@ HELLO = {
     "outline": [0.434, 0.33],
     "max_m_s": 0.6,
     "simulated": True,
-    "phases": {1: "supervised", 2: "corrections"},
+    "phases": ["supervised", "corrections"],
     "what": "Teach it to follow a wall",
     "law": [*LAW],
     "track_m": 0.4,
@@ -219,7 +219,7 @@ async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: St
         if isinstance(request, LessonsRequest):
             return Reply(
                 ReplyStatus.DONE,
-                {"lessons": [["phone-01", "RLA 7: forward", "phone", 1, 42, "", False]], "against": []},
+                {"lessons": [["phone-01", "RLA 7: forward", "phone", 1, 42, "", False]]},
             )
         corners = [[0.0, 0.0], [1.0, 0.0]]
         world = {"version": 3, "name": "A", "size": [3, 4], "outline": corners, "walls": [["north", corners]]}

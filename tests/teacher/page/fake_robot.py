@@ -19,9 +19,9 @@ from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.world import WorldView
 from kurt2rt.core.decision.standing import DRIVES, Standing
+from kurt2rt.core.message_fields import checks_of
 from kurt2rt.core.perception.sensor_words import infrared_law
 from kurt2rt.core.teaching.commands import Single
-from kurt2rt.core.teaching.message_fields import checks_of
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError

@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.core.decision.goal import NamedGoal
+from kurt2rt.core.message_fields import WireError
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import Correct, Seek, SetPhase, StopSeeking
-from kurt2rt.core.teaching.message_fields import WireError
 from kurt2rt.teacher.page.messages import (
     COMMANDS,
     LONGEST_MESSAGE,

@@ -93,7 +93,7 @@ def test_lessons_of_a_hold_are_counted_and_undone_together(a_lesson: Lesson) -> 
     a_lesson.show(hold=held, by_hand=True)
     a_lesson.reads("#said", "spin left is held, lessons: 3")
     phone.finger_up()
-    a_lesson.show(hold=replace(held, lessons=4, on=False), by_hand=False)
+    a_lesson.show(hold=held._replace(lessons=4, on=False), by_hand=False)
     a_lesson.reads("#said", "spin left was held, lessons: 4")
     phone.touch("#undo-hold")
     phone.wait(lambda: a_lesson.told("/undo") == ["local-hold-7"], "all are undone")
@@ -345,7 +345,7 @@ def touch_way(lesson: Lesson, way: str) -> None:
 
 def test_mid_level_asks_and_is_answered_corrected_and_overridden(junction: Lesson) -> None:
     phone, robot = junction.phone, junction.robot
-    asks = replace(COMMANDS, rla=None, distance=7.0, asks=True, nearest_behaviour="turn_right")
+    asks = COMMANDS._replace(rla=None, distance=7.0, asks=True, nearest_behaviour="turn_right")
     near = {"nearest": 12, "nearest_action": "turn_right", "distance": 7.0, "radius": 6.0}
     junction.show(cause="unknown", mid=asks, asks_at="mid", **STANDS, **near)
     junction.reads("#sentence", "Which way? I don't know, teach me")

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from hal.robot_settings import load_robot
-from kurt2rt.channel.protocol.hello import Hello, hello_of
+from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.server.channel import describe_robot
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.ros import messages as ros
@@ -30,7 +30,7 @@ def read_by_another(kind: Any, message: ros.Message) -> Any:
 
 @pytest.fixture(scope="module")
 def hello() -> Hello:
-    return hello_of({"tick": 0, **describe_robot(ChannelFixture().runtime, BOOT, simulated=True)})
+    return describe_robot(ChannelFixture().runtime, BOOT, simulated=True)
 
 
 def counts(**seen_m: float) -> tuple[int, ...]:

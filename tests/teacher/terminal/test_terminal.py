@@ -5,13 +5,13 @@ import socket
 import threading
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import anyio
 import pytest
 
-from kurt2rt.channel.protocol.health_codec import plain_of
+from kurt2rt.channel.protocol.health import HEALTH
 from kurt2rt.channel.protocol.hello import AppraisalName
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.requests import (
@@ -93,9 +93,9 @@ class RobotStub:
         if isinstance(request, HelloRequest):
             return Reply(ReplyStatus.DONE, HELLO)
         if isinstance(request, LessonsRequest):
-            return Reply(ReplyStatus.DONE, {"lessons": [], "against": []})
+            return Reply(ReplyStatus.DONE, {"lessons": []})
         if isinstance(request, HealthRequest):
-            return Reply(ReplyStatus.DONE, {"health": plain_of(ILL)})
+            return Reply(ReplyStatus.DONE, {"health": HEALTH.plain_of(ILL)})
         if isinstance(request, SituationsRequest):
             return Reply(ReplyStatus.DONE, {"situations": ["the door", "the window"]})
         return done(7, text=f"{request.path} is done")
@@ -355,7 +355,7 @@ def test_format_opinion_and_change_are_one_line_each() -> None:
 async def test_behaviour_by_name_teaches_the_mid_level(pairing: Pairing, robot: StandInRobot) -> None:
     async with console_at(pairing, robot.port) as console:
         await console.reads("/take is done")
-        robot.show(cause="unknown", asks_at="mid", mid=replace(COMMANDS, rla=None, distance=7.0, asks=True))
+        robot.show(cause="unknown", asks_at="mid", mid=COMMANDS._replace(rla=None, distance=7.0, asks=True))
         await console.reads("teach me which behaviour to follow: nearest is mid-level RLA 12 (turn_left) at 7 of 6")
         console.type("turn_left")
         await console.reads("/answer is done")
@@ -371,11 +371,11 @@ async def test_behaviour_by_name_teaches_the_mid_level(pairing: Pairing, robot: 
         assert robot.all_of(Teach)[-1].alternative
         console.type("pursue straight_on")
         await console.reads("/pursue is done")
-        robot.show(mid=replace(COMMANDS, behaviour="straight_on", rla=None, overridden=True))
+        robot.show(mid=COMMANDS._replace(behaviour="straight_on", rla=None, overridden=True))
         await console.reads("straight_on, because a teacher said so, until it has finished")
         console.type("way")
         assert "left, straight, right, " in await console.reads("RLA 12 knows left, straight, left")
-        robot.show(surprise=replace(SURPRISED, tick=robot.state.tick, new=True))
+        robot.show(surprise=SURPRISED._replace(tick=robot.state.tick, new=True))
         assert "never followed" in await console.reads("surprise: 3.5 times as far off as usual")
 
 
