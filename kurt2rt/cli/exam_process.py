@@ -12,7 +12,7 @@ from pathlib import Path
 from config.errors import ExitCode
 from config.settings import SettingsError
 from hal.robot_settings import load_robot
-from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus, WorldVerdict
+from kurt2rt.channel.protocol.simulation import EXAM, ExamStatus, WorldVerdict
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.drawing import draw_exams
 from kurt2rt.experiments.lockstep.drive_row import label_of

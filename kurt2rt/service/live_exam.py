@@ -10,7 +10,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from kurt2rt.channel.protocol.exam_status import EXAM, NO_EXAM, ExamStatus
+from kurt2rt.channel.protocol.simulation import EXAM, NO_EXAM, ExamStatus
 from kurt2rt.core.message_fields import WireError
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError

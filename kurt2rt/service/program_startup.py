@@ -12,7 +12,7 @@ from hal.guard_reason import GuardReason
 from hal.tap import Tap
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, local_pairing, pairing_names
 from kurt2rt.channel.server.channel import EVERYWHERE, LOOPBACK
-from kurt2rt.channel.server.udp_port import require_port
+from kurt2rt.channel.server.endpoint import require_port
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge, open_for_teaching
 from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.health.status_socket import serve_waiting, status_socket_path

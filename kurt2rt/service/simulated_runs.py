@@ -11,8 +11,7 @@ import anyio.to_thread
 
 from config.settings_files import shipped_names
 from hal.robot_settings import RobotSettings
-from kurt2rt.channel.protocol.exam_status import ExamStatus
-from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
+from kurt2rt.channel.protocol.simulation import ExamStatus, SimulationView, TaskName
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.settings import load_critic

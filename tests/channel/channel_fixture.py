@@ -6,12 +6,10 @@ from typing import Any, cast
 from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings
 from hal.robot_settings import load_robot
-from kurt2rt.channel.protocol.exam_status import NO_EXAM
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.limits import FASTEST
-from kurt2rt.channel.protocol.request_types import CommandRequest, Request, StreamRequest, tick_request
-from kurt2rt.channel.protocol.requests import StopRequest
-from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
+from kurt2rt.channel.protocol.requests import CommandRequest, Request, StopRequest, StreamRequest, tick_request
+from kurt2rt.channel.protocol.simulation import NO_EXAM, SimulationView, TaskName
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus, TeacherNow
 from kurt2rt.channel.server.reply import Reply

@@ -10,7 +10,7 @@ import cbor2
 from aiocoap.optiontypes import OpaqueOption
 
 from kurt2rt.channel.protocol.codec import BODIES, PATHS, WireError, build_request, decode_request, encode_request
-from kurt2rt.channel.protocol.request_types import Request
+from kurt2rt.channel.protocol.requests import Request
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.core.decision.goal import PartialGoal
 from kurt2rt.core.rla.rla import Phase

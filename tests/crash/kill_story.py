@@ -21,7 +21,7 @@ import can
 from hal.bus import CanBus, open_bus
 from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.limits import COMMAND_ID_BYTES
-from kurt2rt.channel.protocol.request_types import Request, tick_request
+from kurt2rt.channel.protocol.requests import Request, tick_request
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.rla.rla import Phase

@@ -10,7 +10,7 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.robot_settings import load_robot
-from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
+from kurt2rt.channel.protocol.simulation import EXAM, ExamStatus
 from kurt2rt.cli import exam_process
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.drive_row import NOT_JUDGED_BECAUSE

@@ -5,7 +5,7 @@ from collections.abc import Coroutine
 from typing import Any
 
 from kurt2rt.channel.protocol.codec import WireError, decode_request, encode_request
-from kurt2rt.channel.protocol.request_types import StreamRequest
+from kurt2rt.channel.protocol.requests import StreamRequest
 from kurt2rt.channel.server.channel import describe_robot
 from kurt2rt.channel.server.reply import Reply, ReplyStatus
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender

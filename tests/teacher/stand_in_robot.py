@@ -10,7 +10,7 @@ from typing import Any, TypeVar, cast
 import anyio
 
 from kurt2rt.channel.protocol.codec import encode_state
-from kurt2rt.channel.protocol.request_types import CommandRequest, Request, StreamRequest, TickRequest
+from kurt2rt.channel.protocol.requests import CommandRequest, Request, StreamRequest, TickRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.server.endpoint import open_endpoint

@@ -3,8 +3,14 @@
 from collections.abc import Mapping
 from typing import Any, get_args
 
-from kurt2rt.channel.protocol.request_types import Request, StreamRequest, TickRequest, stream_request, tick_request
-from kurt2rt.channel.protocol.requests import REQUESTS
+from kurt2rt.channel.protocol.requests import (
+    REQUESTS,
+    Request,
+    StreamRequest,
+    TickRequest,
+    stream_request,
+    tick_request,
+)
 from kurt2rt.channel.protocol.schema import Codec, decode_strictly, encode_plainly
 from kurt2rt.channel.protocol.state import STATE, State
 from kurt2rt.core.message_fields import Check, WireError, checks_of

@@ -5,10 +5,9 @@ from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
 
-from kurt2rt.channel.protocol.exam_status import ExamStatus
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.limits import BOOT_BYTES
-from kurt2rt.channel.protocol.simulation import SimulationView
+from kurt2rt.channel.protocol.simulation import ExamStatus, SimulationView
 from kurt2rt.core.outcome import Outcome
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
 from kurt2rt.platform.file_part import FilePart

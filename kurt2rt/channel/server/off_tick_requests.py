@@ -2,14 +2,13 @@
 
 import asyncio
 import hashlib
-from collections.abc import Awaitable, Callable, Coroutine
+from collections.abc import Awaitable, Callable, Coroutine, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from kurt2rt.channel.protocol.exam_status import EXAM
+from config.errors import UserError
 from kurt2rt.channel.protocol.limits import MOST_UPLOAD_BYTES, PART_BYTES
-from kurt2rt.channel.protocol.request_types import Request
 from kurt2rt.channel.protocol.requests import (
     PACKAGE,
     BackToStartRequest,
@@ -21,16 +20,15 @@ from kurt2rt.channel.protocol.requests import (
     MoveWallRequest,
     NextRunRequest,
     PlaceRequest,
+    Request,
     SaveRequest,
     SimulationRequest,
     SpeedRequest,
     UploadRequest,
     WorldRequest,
 )
-from kurt2rt.channel.protocol.simulation import SIMULATION
-from kurt2rt.channel.protocol.world import WORLD, WorldView
+from kurt2rt.channel.protocol.simulation import EXAM, SIMULATION, WORLD, WorldView
 from kurt2rt.channel.server.dependencies import ChannelDependencies, TeacherNow
-from kurt2rt.channel.server.failure import WORLD_REFUSALS, failure, known_failure
 from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, not_simulated, refusal, restarted, unsaved
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
@@ -39,7 +37,47 @@ from kurt2rt.knowledge.files.atomic_write import SavedCopy
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runtime import Runtime
-from simbridge.contracts.world_refusal import WorldRefusedError
+from simbridge.contracts.world_refusal import WorldRefusal, WorldRefusedError
+
+WORLD_REFUSALS: Mapping[WorldRefusal, RefusalCode] = {
+    WorldRefusal.NO_WALL: RefusalCode.NO_WALL,
+    WorldRefusal.WALL_ON_ROBOT: RefusalCode.WALL_ON_ROBOT,
+    WorldRefusal.NO_ROOM: RefusalCode.NO_ROOM,
+    WorldRefusal.START_BLOCKED: RefusalCode.START_BLOCKED,
+}
+
+
+def failure(failed: RefusalCode, crashed: RefusalCode, error: Exception) -> Outcome:
+    """Return the outcome of work that failed.
+
+    Args:
+        failed: code for an error that the teacher can mend.
+        crashed: code for an error of the program, which is shown as repr.
+        error: a refusal keeps its own code.
+    """
+    if isinstance(error, CommandRefusedError):
+        return error.outcome
+    if isinstance(error, UserError):
+        return known_failure(failed, error)
+    return Outcome.of(crashed, error=_line(repr(error)))
+
+
+def known_failure(code: RefusalCode, error: UserError) -> Outcome:
+    """Return the outcome of an error that the teacher can mend.
+
+    `cause` is the code of a knowledge error, else empty; `where` its file; `says` its line in the words of its table.
+    """
+    return Outcome.of(
+        code,
+        cause=error.code.value if isinstance(error, KnowledgeError) else "",
+        where=error.where,
+        says=_line(str(error)),
+    )
+
+
+def _line(text: str) -> str:
+    return " ".join(text.split())
+
 
 LAST_ANSWER_S = 0.3
 """Time from the answer to the end of the run: room for three copies of the request, which come each 0.1 s."""

@@ -9,13 +9,16 @@ from kurt2rt.channel.protocol.codec import FACTS
 from kurt2rt.channel.protocol.health import HEALTH
 from kurt2rt.channel.protocol.hello import HELLO, Hello
 from kurt2rt.channel.protocol.lesson_list import LESSONS, SITUATIONS
-from kurt2rt.channel.protocol.request_types import CommandRequest, Request, StreamRequest, TickRequest
 from kurt2rt.channel.protocol.requests import (
+    CommandRequest,
     HealthRequest,
     HelloRequest,
     LessonsRequest,
+    Request,
     SituationsRequest,
     StopRequest,
+    StreamRequest,
+    TickRequest,
     WhyRequest,
 )
 from kurt2rt.channel.server.dependencies import ChannelDependencies

@@ -16,8 +16,7 @@ from typing import Any
 import anyio
 
 from kurt2rt.channel.protocol.limits import UPLOAD_ID_BYTES, UPLOAD_PART_BYTES
-from kurt2rt.channel.protocol.request_types import CommandRequest
-from kurt2rt.channel.protocol.requests import LoadRequest, UploadRequest
+from kurt2rt.channel.protocol.requests import CommandRequest, LoadRequest, UploadRequest
 from kurt2rt.core.teaching.commands import Correct, Resume, RunBehaviour, Single, Stop, Take, TeachShown
 from kurt2rt.teacher.client.answer import Answer, RefusedError
 from kurt2rt.teacher.client.manual_drive import HoldHandle, ManualDriveHandle

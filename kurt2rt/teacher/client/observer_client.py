@@ -14,13 +14,11 @@ from typing import Self
 
 from kurt2rt.channel.protocol import requests
 from kurt2rt.channel.protocol.codec import FACTS
-from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
 from kurt2rt.channel.protocol.health import HEALTH, HealthReport
 from kurt2rt.channel.protocol.hello import Hello, hello_of
 from kurt2rt.channel.protocol.lesson_list import LESSONS, SITUATIONS, LessonLine
-from kurt2rt.channel.protocol.simulation import SIMULATION, SimulationView
+from kurt2rt.channel.protocol.simulation import EXAM, SIMULATION, WORLD, ExamStatus, SimulationView, WorldView
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.channel.protocol.world import WORLD, WorldView
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.connection import Connection, open_connection

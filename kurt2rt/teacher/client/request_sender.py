@@ -10,8 +10,7 @@ import anyio.lowlevel
 
 from kurt2rt.channel.protocol.codec import WireError, decode_answer, encode_request, path_of
 from kurt2rt.channel.protocol.limits import COMMAND_ID_BYTES, PART_BYTES
-from kurt2rt.channel.protocol.request_types import CommandRequest, Request, tick_request
-from kurt2rt.channel.protocol.requests import StopRequest
+from kurt2rt.channel.protocol.requests import CommandRequest, Request, StopRequest, tick_request
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.message_fields import Number, check_of
 from kurt2rt.core.outcome import RefusalCode

@@ -29,12 +29,10 @@ from kurt2rt.teacher.page.messages import (
     StopNow,
     Why,
 )
-from kurt2rt.teacher.page.page_connection import PageConnection
-from kurt2rt.teacher.page.sent_states import SentState
+from kurt2rt.teacher.page.page_connection import PageConnection, SentState
 from kurt2rt.teacher.page.slow_state import SlowState
 from kurt2rt.teacher.page.texts import PageNotice, text_of
-from kurt2rt.teacher.page.views import answer_view, refusal_view, state_view
-from kurt2rt.teacher.page.why_view import why_view
+from kurt2rt.teacher.page.views import answer_view, refusal_view, state_view, why_view
 
 _POLL_S = 0.01
 """Longest delay until a silent page is noticed."""

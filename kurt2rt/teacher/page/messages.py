@@ -6,7 +6,7 @@ from dataclasses import MISSING, dataclass, fields
 from typing import Annotated, Any, get_args
 
 from kurt2rt.channel.protocol.codec import PATHS
-from kurt2rt.channel.protocol.request_types import CommandRequest
+from kurt2rt.channel.protocol.requests import CommandRequest
 from kurt2rt.core.message_fields import Bytes, Check, Float, Int, Name, WireError, checks_of
 from kurt2rt.core.teaching.commands import Single
 from kurt2rt.core.teaching.message_fields import Speed

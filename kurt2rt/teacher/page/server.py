@@ -17,9 +17,8 @@ from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.access import Access
 from kurt2rt.teacher.page.app import build_app
 from kurt2rt.teacher.page.bridge import Bridge
-from kurt2rt.teacher.page.connection_limiter import ConnectionLimiter
 from kurt2rt.teacher.page.public_address import PageError
-from kurt2rt.teacher.page.uvicorn_protocols import REQUEST_WITHIN_S, TolerantWebSocket, limited_http
+from kurt2rt.teacher.page.uvicorn_protocols import REQUEST_WITHIN_S, ConnectionLimiter, TolerantWebSocket, limited_http
 
 _END_S = 1.0
 _MAX_CONNECTIONS = 96

@@ -1,13 +1,43 @@
 """Protocols of uvicorn with limits that uvicorn itself lacks: a time limit for requests, junk in a WebSocket."""
 
 import asyncio
+from collections import OrderedDict
+from collections.abc import Callable
 from typing import Any
 
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
-from kurt2rt.teacher.page.connection_limiter import ConnectionLimiter
+
+class ConnectionLimiter:
+    """Open connections without a cookie, at most `most`, and `per_address` of one address."""
+
+    def __init__(self, most: int = 32, per_address: int = 12) -> None:
+        self._most = most
+        self._per_address = per_address
+        self._waiting: OrderedDict[object, tuple[str, Callable[[], None]]] = OrderedDict()
+
+    def add(self, connection: object, address: str, close: Callable[[], None]) -> None:
+        """Add a connection of an address, and close the oldest one (of that address) if there are too many."""
+        same = [each for each, (its, _) in self._waiting.items() if its == address]
+        if len(same) >= self._per_address:
+            self._evict(same[0])
+        elif len(self._waiting) >= self._most:
+            self._evict(next(iter(self._waiting)))
+        self._waiting[connection] = (address, close)
+
+    def remove(self, connection: object) -> None:
+        """Stop counting a connection: it has shown the cookie, or was closed."""
+        self._waiting.pop(connection, None)
+
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    def _evict(self, connection: object) -> None:
+        _, close = self._waiting.pop(connection)
+        close()
+
 
 AUTHENTICATED = "kurt2rt.known"
 """Key in the state of an ASGI scope: callback for a connection that has shown the cookie."""

@@ -19,8 +19,8 @@ from kurt2rt.ros.topic import topic_of
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.client.observer_client import ObserverClient
-from kurt2rt.teacher.ros.odometer import Odometer
 from kurt2rt.teacher.ros.robot_messages import (
+    Odometer,
     ScanBuilder,
     link_status,
     odometry,

@@ -1,23 +1,119 @@
 """Scripted teacher with the limits of a person: late, seldom, sometimes wrong, and blind for small mistakes."""
 
+import random
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Generic, Literal, TypeVar
 
 from behaviors.action_groups import STAND
 from behaviors.policies.policy import ReferencePolicy
 from kurt2rt.core.rla.lesson_history import hold_id
 from kurt2rt.core.rla.rla import SCRIPTED, Phase
-from kurt2rt.core.teacher_settings import PersonSettings, TeacherProfile
+from kurt2rt.core.teacher_settings import Delay, PersonSettings, TeacherProfile
 from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Resume, Stop, Teach, Undo
 from kurt2rt.teacher.scripted.basic_teacher import Ahead, BasicTeacher, TeacherView
-from kurt2rt.teacher.scripted.delay_line import DelayLine
-from kurt2rt.teacher.scripted.hand import Hand
-from kurt2rt.teacher.scripted.human_limits import PressLimit
+from kurt2rt.teacher.scripted.human_limits import AttentionLapses, DelaySampler, PressLimit
 from kurt2rt.teacher.scripted.look_back import LookBack, Mistake
 from kurt2rt.teacher.scripted.mistake_watcher import MistakeWatcher
-from kurt2rt.teacher.scripted.person_chance import PersonChance
 from kurt2rt.teacher.scripted.press_times import HumanTimes
+
+
+class PersonChance:
+    """All chance of a person: one random stream for each kind of event."""
+
+    def __init__(self, person: PersonSettings, period_s: float, of: str) -> None:
+        """Begin the streams; `of` tells them from those of another lesson."""
+
+        def delays(delay: Delay, name: str) -> DelaySampler:
+            return DelaySampler(delay, person.slower_per_minute, period_s, name + of)
+
+        self.question_delay = delays(person.question_delay, "question delays")
+        self.mistake_delay = delays(person.mistake_delay, "mistake delays")
+        self._look_back_delay = delays(person.look_back.takes, "looks back")
+        self.attention = AttentionLapses(person.lapses, period_s, "lapses" + of)
+        self.errors = random.Random("errors" + of)
+        self.slips = random.Random("slips that are noticed" + of)
+        self._moments = random.Random("moments of mistakes" + of)
+        self._moment_spread = person.look_back.moment_spread_s / period_s
+        self._period_s = period_s
+
+    def look_back(self, mistake: Mistake) -> LookBack:
+        """Return the correction of a mistake by rewind."""
+        return LookBack(mistake, self._look_back_delay, self._period_s)
+
+    def moment_error_ticks(self) -> int:
+        """Return the error of the moment that the person takes for the begin of a mistake."""
+        return round(self._moments.gauss(0.0, self._moment_spread))
+
+
+class Hand:
+    """Hand that presses for an action, and moves to the right action with a delay."""
+
+    def __init__(self, delay_ticks: int, press_id: int, action: str, *, begins: int, ends: int) -> None:
+        """Begin a press.
+
+        Args:
+            delay_ticks: time from a change of the right action to that of the hand.
+            press_id: of the press.
+            action: first action.
+            begins: tick from which the hand follows.
+            ends: tick of the release.
+        """
+        self.press_id = press_id
+        self.action = action
+        self.ends = ends
+        """Tick of the release."""
+        self._delay_ticks = delay_ticks
+        self._target = action
+        self._moves_from = begins
+        self._arrives: int | None = None
+
+    def stay(self, until: int) -> None:
+        """Keep the present action until a tick, right or wrong."""
+        self._moves_from = until
+
+    def follow(self, now: int, right: str) -> None:
+        """Begin to move to the right action, if no move is under way."""
+        if self._arrives is None and right != self.action and now >= self._moves_from:
+            self._target, self._arrives = right, now + self._delay_ticks
+
+    def move(self, now: int) -> None:
+        """Change to the target action once the hand's delay has passed."""
+        if self._arrives is not None and now >= self._arrives:
+            self.action, self._arrives = self._target, None
+
+
+_Item = TypeVar("_Item")
+
+
+class DelayLine(Generic[_Item]):
+    """First-in, first-out queue with a delay."""
+
+    def __init__(self, delay_ticks: int) -> None:
+        """Delay each item by `delay_ticks`."""
+        self._delay_ticks = delay_ticks
+        self._items: deque[tuple[int, _Item]] = deque()
+
+    def put(self, now: int, item: _Item) -> None:
+        """Add an item in tick `now`."""
+        self._items.append((now + self._delay_ticks, item))
+
+    def pop(self, now: int) -> _Item | None:
+        """Return the oldest item whose delay is over in tick `now`; None if there is none."""
+        if not self._items or self._items[0][0] > now:
+            return None
+        return self._items.popleft()[1]
+
+    @property
+    def next_due(self) -> int | None:
+        """Tick in which the oldest item comes out; None without items."""
+        return self._items[0][0] if self._items else None
+
+    def clear(self) -> None:
+        """Drop all items that are still on their way."""
+        self._items.clear()
+
 
 _Way = Literal["press", "hold", "rewind"]
 """Way to give a press."""

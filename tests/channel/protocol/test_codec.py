@@ -22,8 +22,7 @@ from kurt2rt.channel.protocol.codec import (
     encode_state,
     path_of,
 )
-from kurt2rt.channel.protocol.request_types import Request, StreamRequest, TickRequest
-from kurt2rt.channel.protocol.requests import LessonsRequest
+from kurt2rt.channel.protocol.requests import LessonsRequest, Request, StreamRequest, TickRequest
 from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal

@@ -17,7 +17,7 @@ import anyio
 import pytest
 from anyio.abc import Process
 
-from kurt2rt.channel.protocol.request_types import CommandRequest, Request, TickRequest
+from kurt2rt.channel.protocol.requests import CommandRequest, Request, TickRequest
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.rla.events import TeachingEvent

@@ -134,3 +134,14 @@ def test_a_folder_that_is_none_is_told(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(CredentialsError, match=re.escape(str(tmp_path / "file"))):
         Teachers(tmp_path / "file")
+
+
+async def test_pairing_with_critics_name_is_refused_and_reported(house: House) -> None:
+    house.pair("phone")
+    (house.teachers / "phone").rename(house.teachers / "critic")
+    house.pair("tablet")
+    teachers = house.start()
+    await teachers.refresh()
+    assert teachers.names == ("tablet",)
+    (line,) = teachers.trouble
+    assert "kurt2rt pair critic --revoke" in line

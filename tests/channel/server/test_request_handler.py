@@ -6,11 +6,10 @@ from typing import Any, get_args
 import pytest
 
 from kurt2rt.channel.protocol.codec import PATHS, decode_answer, encode_answer
-from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
 from kurt2rt.channel.protocol.lesson_list import LESSONS, Contradicting
-from kurt2rt.channel.protocol.request_types import CommandRequest, TickRequest
 from kurt2rt.channel.protocol.requests import (
     BackToStartRequest,
+    CommandRequest,
     ExamRequest,
     ExamStatusRequest,
     ExportRequest,
@@ -23,11 +22,12 @@ from kurt2rt.channel.protocol.requests import (
     SimulationRequest,
     SpeedRequest,
     StopRequest,
+    TickRequest,
     UploadRequest,
     WhyRequest,
     WorldRequest,
 )
-from kurt2rt.channel.protocol.simulation import SIMULATION
+from kurt2rt.channel.protocol.simulation import EXAM, SIMULATION, ExamStatus
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.channel.server.request_handler import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS

@@ -20,8 +20,7 @@ from kurt2rt.channel.protocol.codec import (
     encode_state,
     path_of,
 )
-from kurt2rt.channel.protocol.request_types import Request
-from kurt2rt.channel.protocol.requests import HelloRequest, LessonsRequest, StopRequest
+from kurt2rt.channel.protocol.requests import HelloRequest, LessonsRequest, Request, StopRequest
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.security.pairing import local_pairing, pair

@@ -13,8 +13,8 @@ import pytest
 
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.limits import VERSION
-from kurt2rt.channel.protocol.request_types import CommandRequest
 from kurt2rt.channel.protocol.requests import (
+    CommandRequest,
     HelloRequest,
     LessonsRequest,
     PlaceRequest,

@@ -9,15 +9,13 @@ import anyio
 import anyio.lowlevel
 
 from hal.robot_settings import load_robot
-from kurt2rt.channel.protocol.exam_status import NO_EXAM, ExamStatus
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.hello import Hello, SensorPlace
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.limits import VERSION
-from kurt2rt.channel.protocol.request_types import CommandRequest
-from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
+from kurt2rt.channel.protocol.requests import CommandRequest
+from kurt2rt.channel.protocol.simulation import NO_EXAM, ExamStatus, SimulationView, TaskName, WorldView
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.channel.protocol.world import WorldView
 from kurt2rt.core.decision.standing import DRIVES, Standing
 from kurt2rt.core.message_fields import checks_of
 from kurt2rt.core.perception.sensor_words import infrared_law

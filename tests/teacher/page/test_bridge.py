@@ -9,8 +9,7 @@ import anyio
 import anyio.lowlevel
 import pytest
 
-from kurt2rt.channel.protocol.request_types import CommandRequest
-from kurt2rt.channel.protocol.requests import NextRunRequest, PlaceRequest
+from kurt2rt.channel.protocol.requests import CommandRequest, NextRunRequest, PlaceRequest
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.goal import NamedGoal
 from kurt2rt.core.outcome import Outcome, RefusalCode

@@ -1,4 +1,4 @@
-from kurt2rt.teacher.page.connection_limiter import ConnectionLimiter
+from kurt2rt.teacher.page.uvicorn_protocols import ConnectionLimiter
 
 
 def test_add_at_the_limit_closes_the_oldest() -> None:

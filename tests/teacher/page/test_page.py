@@ -11,9 +11,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from hal.robot_settings import load_robot
-from kurt2rt.channel.protocol.exam_status import ExamStatus, WorldVerdict
 from kurt2rt.channel.protocol.hello import AppraisalName, MidIntroduction
 from kurt2rt.channel.protocol.lesson_list import Contradicting
+from kurt2rt.channel.protocol.simulation import ExamStatus, WorldVerdict
 from kurt2rt.channel.protocol.state import HoldState, ShownState
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.goal import NamedGoal

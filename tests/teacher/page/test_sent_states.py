@@ -1,6 +1,6 @@
 import math
 
-from kurt2rt.teacher.page.sent_states import SentStates
+from kurt2rt.teacher.page.page_connection import SentStates
 
 
 def test_may_send_without_acknowledgement_ends_at_the_window() -> None:

@@ -296,3 +296,10 @@ async def test_a_download_needs_the_cookie_and_a_file_of_the_robot() -> None:
         assert missing.body
         page.robot.silent = True
         assert (await page.get(f"/files/{COPY}", page.cookie)).status == 504
+
+
+async def test_invalid_message_closes_the_websocket() -> None:
+    async with served() as page, page.websocket() as socket:
+        await socket.send('{"kind": "drive"}')
+        await socket.wait_closed()
+        assert socket.close_code == 1008

@@ -10,8 +10,8 @@ from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.server.channel import describe_robot
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.ros import messages as ros
-from kurt2rt.teacher.ros.odometer import Odometer
 from kurt2rt.teacher.ros.robot_messages import (
+    Odometer,
     ScanBuilder,
     robot_status,
 )

@@ -29,6 +29,7 @@ from kurt2rt.core.teaching.commands import (
     Appraise,
     BeAt,
     Correct,
+    HoldAction,
     NameSituation,
     Resume,
     Reward,
@@ -406,3 +407,13 @@ async def test_places_are_named_and_sought(pairing: Pairing, robot: StandInRobot
         assert (await robot.hears(Seek, 4))[-1].goal == NamedGoal("x_m=high")
         console.type("help")
         await console.reads("seek FEATURE=VALUE")
+
+
+async def test_hold_sends_the_action_for_its_time(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
+        console.type("hold spin_left 0.2")
+        stop = (await robot.hears(StopRequest))[-1]
+        holds = robot.all_of(HoldAction)
+        assert {(each.action, each.press_id) for each in holds} == {("spin_left", stop.press_id)}
+        assert len(holds) > 1
