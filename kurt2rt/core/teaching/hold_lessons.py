@@ -1,7 +1,6 @@
 """Lessons of a held action: "hold to correct"."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.rla.events import TeachingEvent
@@ -24,8 +23,9 @@ was right 0.05 to 0.15 s before or after their situation (docs/notebook.md).
 """
 
 
-class Hold(NamedTuple):
-    """A press of a held action and its lessons so far."""
+@dataclass(slots=True)
+class Hold:
+    """A press of a held action, and its lessons so far."""
 
     teacher: str
     press_id: int
@@ -33,13 +33,6 @@ class Hold(NamedTuple):
     """Action that is held, or was held last."""
     lesson: str
     """Id that undoes all lessons of the press."""
-    lessons: int
-    """Number of lessons that it gave."""
-
-
-@dataclass(slots=True)
-class _Press:
-    hold: Hold
     lag_ticks: int
     """Age of the newest message's state when the message arrived."""
     earliest: int
@@ -52,6 +45,8 @@ class _Press:
     """Tick since which the present action is held."""
     due: int
     """Tick of the next lesson of the held action."""
+    lessons: int = 0
+    """Number of lessons that it gave."""
     press_lessons: int = 0
     """Number of lessons about the mistake that were due."""
 
@@ -71,12 +66,8 @@ class HoldLessons:
         self._system = system
         self._recent = recent
         self._delay = delay
-        self._press: _Press | None = None
-
-    @property
-    def newest(self) -> Hold | None:
+        self.newest: Hold | None = None
         """Newest hold, over or not; None before the first."""
-        return None if self._press is None else self._press.hold
 
     def begin(self, command: HoldAction, tick: int, speed: int) -> None:
         """Begin a press with its first message; `speed`: robot seconds in one second."""
@@ -84,27 +75,36 @@ class HoldLessons:
         asked_tick = self._delay.asked_tick
         # The teacher of a robot that asks reacts to its question, not to something before it.
         earliest = tick - BACK_TICKS * speed if asked_tick is None else asked_tick
-        hold = Hold(command.teacher, command.press_id, command.action, lesson, 0)
         lag_ticks = max(0, tick - command.seen_tick)
         noticed = tick - lag_ticks - self._delay.correction_ticks(command.teacher, speed)
-        self._press = _Press(hold, lag_ticks, earliest, max(noticed, earliest, 0), began=tick, since=tick, due=tick)
+        self.newest = Hold(
+            command.teacher,
+            command.press_id,
+            command.action,
+            lesson,
+            lag_ticks,
+            earliest,
+            max(noticed, earliest, 0),
+            began=tick,
+            since=tick,
+            due=tick,
+        )
 
     def on_message(self, command: HoldAction, tick: int) -> None:
         """Note lag and action of a further message of the press; call it only after `begin`."""
-        press = self._press
-        assert press is not None
-        press.lag_ticks = max(0, tick - command.seen_tick)
-        if command.action != press.hold.action:
-            press.since = tick
-            press.hold = press.hold._replace(action=command.action)
+        hold = self.newest
+        assert hold is not None
+        hold.lag_ticks = max(0, tick - command.seen_tick)
+        if command.action != hold.action:
+            hold.action, hold.since = command.action, tick
 
     def next_tick(self, tick: int) -> int:
         """Return the next tick, from `tick` on, in which `build` may give a lesson. Call it only after `begin`."""
-        press = self._press
-        assert press is not None
-        if press.press_lessons < PRESS_LESSONS and press.since == press.began:
+        hold = self.newest
+        assert hold is not None
+        if hold.press_lessons < PRESS_LESSONS and hold.since == hold.began:
             return tick
-        return max(tick, press.due)
+        return max(tick, hold.due)
 
     def build(self, tick: int, phase: Phase, speed: int) -> TeachingEvent | None:
         """Return the lesson that is due in a tick of the hold; None if none is. Call it only after `begin`.
@@ -114,33 +114,31 @@ class HoldLessons:
             phase: training phase.
             speed: robot seconds in one second.
         """
-        press = self._press
-        assert press is not None
-        hold = press.hold
-        meant = self._meant_tick(press, tick, self._delay.hand_ticks(hold.teacher, speed))
+        hold = self.newest
+        assert hold is not None
+        meant = self._meant_tick(hold, tick, self._delay.hand_ticks(hold.teacher, speed))
         if meant is None or not self._recent.contains(meant) or not self._recent.teachable(meant):
             return None
         origin = Origin(f"{hold.lesson}{DERIVED}{tick}", hold.teacher, phase, tick)
         event = self._lessons.held(hold.action, meant, origin, counts=hold.lessons == 0)
-        if event is not None:
-            press.hold = hold._replace(lessons=hold.lessons + 1)
+        hold.lessons += event is not None
         return event
 
-    def _meant_tick(self, press: _Press, tick: int, hand_ticks: int) -> int | None:
+    def _meant_tick(self, hold: Hold, tick: int, hand_ticks: int) -> int | None:
         """Return the tick of the situation that the lesson due in `tick` is about; None if no lesson is due.
 
         `hand_ticks`: delay of the teacher's hand.
         """
-        reacted = tick - press.lag_ticks - hand_ticks
-        if press.press_lessons < PRESS_LESSONS and press.since == press.began:
-            meant = press.noticed + press.press_lessons * EVERY_TICKS
-            press.press_lessons += 1
-            return min(meant, self._recent.newest) if meant <= max(reacted, press.noticed) else None
-        if tick < press.due:
+        reacted = tick - hold.lag_ticks - hand_ticks
+        if hold.press_lessons < PRESS_LESSONS and hold.since == hold.began:
+            meant = hold.noticed + hold.press_lessons * EVERY_TICKS
+            hold.press_lessons += 1
+            return min(meant, self._recent.newest) if meant <= max(reacted, hold.noticed) else None
+        if tick < hold.due:
             return None
-        press.due = tick + EVERY_TICKS
+        hold.due = tick + EVERY_TICKS
         # The first action was chosen when the mistake was noticed; the hand needs its delay to bring another one.
-        unsure_ticks = hand_ticks if press.since == press.began else 0
-        if tick - press.since < unsure_ticks + 2 * STEADY_TICKS:
+        unsure_ticks = hand_ticks if hold.since == hold.began else 0
+        if tick - hold.since < unsure_ticks + 2 * STEADY_TICKS:
             return None
-        return min(max(reacted - STEADY_TICKS, press.earliest), self._recent.newest)
+        return min(max(reacted - STEADY_TICKS, hold.earliest), self._recent.newest)
