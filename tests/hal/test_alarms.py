@@ -48,15 +48,6 @@ def test_it_stops_again_after_a_resume_while_the_other_goes_on(ride: Ride) -> No
     assert ride.kurt2.health.foreign_control == 3
 
 
-def test_own_extended_and_remote_frames_raise_no_alarm(ride: Ride) -> None:
-    ride.drive_for(0.1)
-    extended = can.Message(arbitration_id=0x01, is_extended_id=True, data=bytes(8))
-    remote = can.Message(arbitration_id=0x01, is_extended_id=False, is_remote_frame=True)
-    ride.desk.arrive(extended, remote)
-    assert not ride.tick().latched
-    assert ride.kurt2.health.foreign_control == 0
-
-
 def test_frames_that_slip_past_the_filter_raise_no_alarm(ride: Ride) -> None:
     ride.desk.set_id_filter(frozenset({0x123}))
     ride.desk.arrive(Frame(0x123, bytes(8)))

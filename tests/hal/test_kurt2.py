@@ -16,7 +16,7 @@ from hal.control import Mode, RawControl, RawSide, SpeedControl
 from hal.guard_reason import GuardReason
 from hal.in_process_bus import InProcessBus
 from hal.kurt2 import Kurt2
-from hal.robot import STANDSTILL, GuardResult, Robot, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from tests.hal.helpers import (
     CODEC,
     INFRARED_FRAMES,
@@ -40,11 +40,6 @@ def robot(ends: Ends) -> Iterator[Kurt2]:
     kurt2 = Kurt2(ROBOT, ends[0])
     yield kurt2
     kurt2.close()
-
-
-def test_it_is_a_robot(robot: Kurt2) -> None:
-    as_robot: Robot = robot
-    assert as_robot.sense(1.0).time_s == 1.0
 
 
 def test_before_the_first_frame_it_is_blind_and_stands(robot: Kurt2, ends: Ends) -> None:
@@ -231,12 +226,6 @@ def test_it_drives_through_the_guard(robot: Kurt2, ends: Ends) -> None:
     assert robot.drive(WheelSpeeds(0.3, 0.2), now_s, now_s).latched
     robot.release()
     assert not robot.drive(STANDSTILL, now_s, now_s).latched
-
-
-def test_driving_is_the_beat_of_the_watchdog(robot: Kurt2) -> None:
-    assert not robot.watchdog.check(math.inf)
-    robot.drive(STANDSTILL, 0.0, 0.0)
-    assert robot.watchdog.check(math.inf)
 
 
 def test_a_bus_that_goes_away_stops_the_robot_until_released(robot: Kurt2, ends: Ends) -> None:

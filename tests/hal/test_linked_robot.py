@@ -97,14 +97,6 @@ def test_junk_changes_nothing_and_is_counted(scene: Scene, report: Report) -> No
     assert scene.robot.health.junk == 4
 
 
-def test_silence_makes_the_robot_stand(scene: Scene) -> None:
-    scene.drive()
-    results = [scene.tick(hears=False) for _ in range(round(LIMITS.stale_infrared_s / TICK_S) + 2)]
-    assert results[0].wheel_speeds == SLOW
-    assert results[-1] == GuardResult(STANDSTILL, (GuardReason.INFRARED_STALE,), latched=False)
-    assert scene.link.sent[-1] == STANDSTILL
-
-
 def test_lost_link_stops_until_it_is_back_and_released(scene: Scene) -> None:
     scene.drive()
     scene.link.error = BusError("unplugged", where="link of a test", do="plug it in")
@@ -227,13 +219,6 @@ def test_readings_that_repeat_themselves_stop_the_robot(scene: Scene) -> None:
         scene.speeds = result.wheel_speeds
     assert result.reasons == (GuardReason.INFRARED_FROZEN,)
     assert "distance sensors of the robot repeated themselves" in scene.robot.health.alarm
-
-
-def test_ages_are_forgotten_when_the_clock_runs_backwards(scene: Scene) -> None:
-    scene.drive()
-    scene.now_s -= 10.0
-    readings = scene.robot.sense(scene.now_s)
-    assert readings.infrared_age_s == readings.encoder_age_s == readings.bumper_age_s == math.inf
 
 
 def test_close_brakes_and_closes_the_link(scene: Scene) -> None:
