@@ -22,7 +22,7 @@ from kurt2rt.channel.protocol.codec import (
     encode_state,
     path_of,
 )
-from kurt2rt.channel.protocol.requests import LessonsRequest, Request, StreamRequest, TickRequest
+from kurt2rt.channel.protocol.requests import Request
 from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
@@ -37,19 +37,7 @@ from kurt2rt.core.message_fields import (
     Text,
     UpTo,
 )
-from kurt2rt.core.rla.rla import BASIC, MID, Phase
-from kurt2rt.core.teaching.commands import (
-    Appraise,
-    Correct,
-    Drive,
-    EndSession,
-    HoldAction,
-    Seek,
-    SetPhase,
-    Single,
-    Stream,
-    Teach,
-)
+from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.teaching.message_fields import MOST_SEGMENTS, GoalField
 from kurt2rt.core.teaching.progress import Progress
 from kurt2rt.core.teaching.question import FeatureDifference
@@ -309,30 +297,6 @@ def test_request_not_flat_list_is_refused() -> None:
 )
 def test_refusal_of_a_value_begins_with_its_field(path: str, body: list[object], field: str) -> None:
     assert refusal(path, cbor2.dumps(body)).startswith(f"{field} ")
-
-
-def test_the_bodies_are_the_lists_of_the_contract() -> None:
-    like = PartialGoal((("x_m", 1.75), ("y_m", 0.5)), 0.25)
-    streams: list[tuple[Stream, list[object]]] = [
-        (Drive("", 90, 2, 0.25, -0.25), [2, 0.25, -0.25]),
-        (HoldAction("", 90, 2, "forward"), [2, "forward"]),
-    ]
-    for command, body in streams:
-        assert cbor2.loads(encode_request(StreamRequest(BOOT, command))) == [BOOT, 90, *body]
-    orders: list[tuple[Single, list[object]]] = [
-        (Teach("", "", "forward", 88), ["forward", 88, "basic", False]),
-        (Correct("", "", "turn_left", None, MID), ["turn_left", None, "mid", False]),
-        (Correct("", "", "forward", None, late=True), ["forward", None, "basic", True]),
-        (Appraise("", "", "bad", 88), ["bad", 88]),
-        (SetPhase("", "", Phase.CORRECTIONS), [2]),
-        (EndSession("", ""), []),
-        (Seek("", "", NamedGoal("door")), ["door"]),
-        (Seek("", "", RlaGoal(12)), [12]),
-        (Seek("", "", like), [[[["x_m", 1.75], ["y_m", 0.5]], 0.25]]),
-    ]
-    for once, body in orders:
-        assert cbor2.loads(encode_request(TickRequest(BOOT, ID, 90, once))) == [BOOT, ID, 90, *body]
-    assert cbor2.loads(encode_request(LessonsRequest(10))) == [10]
 
 
 def test_a_state_leaves_room_in_its_datagram() -> None:

@@ -98,16 +98,6 @@ class Phone:
         self._add_before_scripts(_KEEPS_WHAT_IT_SAYS)
 
     @contextmanager
-    def first_visit(self) -> Iterator[None]:
-        """Open the page as on a first visit meanwhile."""
-        self._remove_before_scripts(self._before)
-        try:
-            yield
-        finally:
-            self._before = self._add_before_scripts(_HAS_BEEN_HERE)
-            self.leave()
-
-    @contextmanager
     def in_the_dark(self) -> Iterator[None]:
         """Prefer the dark theme meanwhile."""
         scheme = "prefers-color-scheme"

@@ -238,33 +238,6 @@ def test_a_stop_without_a_link_is_sent_when_the_link_is_back(a_phone: Phone, roo
     phone.wait(lambda: phone.text("#stop") == "STOP", "STOP was answered")
 
 
-def test_a_hand_puts_the_robot_elsewhere_in_the_simulated_world(a_phone: Phone, room: Classroom) -> None:
-    phone = a_phone
-    begin(phone, room)
-    stand(phone, room)  # a place given before the page knows of the stop would be refused
-    phone.wait(lambda: room.state().left_m_s == room.state().right_m_s == 0, "the robot stands")
-    phone.touch("#view")
-    before = room.state().place
-    assert before is not None
-    width_m, height_m = 3.0, 4.0
-    left, top, width, height = phone.run(
-        "const b = document.querySelector('#world-view').getBoundingClientRect(); return [b.x, b.y, b.width, b.height];"
-    )
-    scale = min((width - 24) / width_m, (height - 24) / height_m)
-    at = (
-        left + (width - width_m * scale) / 2 + before.x_m * scale,
-        top + (height + height_m * scale) / 2 - before.y_m * scale,
-    )
-    to = (at[0] - 1.2 * scale, at[1] + 0.8 * scale)
-    phone.finger_down(*at)
-    phone.finger_to(*to)
-    phone.show("8-hand")
-    assert room.state().place == before  # nothing is sent before it is put down
-    phone.finger_up()
-    phone.wait(lambda: (place := room.state().place) is not None and abs(place.x_m - 1.0) < 0.1, "it stands there")
-    phone.touch("#view")
-
-
 def test_a_page_that_is_left_lets_go_of_the_robot(a_phone: Phone, room: Classroom) -> None:
     phone = a_phone
     begin(phone, room)

@@ -1,9 +1,7 @@
 """`kurt2rt teach` as a process of its own."""
 
-import errno
 import http.client
 import json
-import os
 import signal
 import socket
 from pathlib import Path
@@ -11,9 +9,7 @@ from urllib.parse import urlsplit
 
 from websockets.sync.client import connect
 
-from config import CONFIG_DIR
-from kurt2rt.channel.security.pairing import pair, read_device, revoke
-from kurt2rt.teacher.page.server import listen
+from kurt2rt.channel.security.pairing import pair, revoke
 from tests.cli.helpers import running
 from tests.patience import PATIENCE_S
 
@@ -72,25 +68,3 @@ def test_a_pairing_that_is_revoked_ends_its_page(tmp_path: Path) -> None:
         (line,) = page.process.stderr.read().splitlines()
     assert line.startswith("kurt2rt: phone: ")
     assert line.endswith("kurt2rt pair phone")
-
-
-def test_a_second_page_takes_the_next_port_and_says_so(tmp_path: Path) -> None:
-    pair(tmp_path / "var" / "teachers", tmp_path / "var" / "devices", "phone")
-    settings = tmp_path / "own.yaml"
-    default = (CONFIG_DIR / "runtime" / "default.yaml").read_text(encoding="utf-8")
-    with listen(0, everywhere=False) as before:
-        port = before.getsockname()[1]
-        settings.write_text(default.replace("page_port: 8642", f"page_port: {port}"), encoding="utf-8")
-        with running("teach", "--device", "phone", "--settings", "own.yaml", *HERE, folder=tmp_path) as page:
-            told = page.wait_for("page for phone, ")
-            served = urlsplit(page.wait_for("http://").strip()).port
-            assert served is not None
-            assert port < served <= port + 9
-            assert str(port) in told
-            assert str(served) in told
-            cookie_of(f"http://127.0.0.1:{served}/pair?token={read_device(tmp_path / 'var/devices/phone').token}")
-            assert page.end(signal.SIGTERM).err == ""
-        with running("teach", "--device", "phone", "--page-port", str(port), folder=tmp_path) as page:
-            page.process.wait(timeout=PATIENCE_S)
-            assert page.process.stderr is not None
-            assert os.strerror(errno.EADDRINUSE) in page.process.stderr.read()
