@@ -15,10 +15,9 @@ from kurt2rt.platform.gc_control import gc_frozen
 from tests.hal.careless_guards import CARELESS
 from tests.hal.envelope import APPROACHES_FOR, STANDS_FOR, violations
 from tests.hal.playing import SIGNAL, Played, play
-from tests.hal.streams import TICKS_PER_STREAM, Streams, draw_streams
+from tests.hal.streams import Streams, draw_streams
 
 STREAMS_PER_SEED = 400
-TICKS_PER_SEED = STREAMS_PER_SEED * TICKS_PER_STREAM
 FAST_STREAMS = 100
 MORE_SEEDS = np.arange(3)
 DEEP_SEEDS = np.arange(100, 2600)
