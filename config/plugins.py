@@ -45,27 +45,39 @@ class Plugin(NamedTuple):
 
 
 _LOADED: dict[tuple[str, str], Plugin] = {}
-# What a recording or package from elsewhere names must not be imported. A parameter would have to pass through every
-# validator of settings.
-_FROM_ELSEWHERE: ContextVar[bool] = ContextVar("settings from elsewhere", default=False)
+
+
+class Shelf(NamedTuple):
+    """Places from which settings and plug-ins come."""
+
+    is_own: bool = True
+    """False for settings from elsewhere, whose author may be hostile."""
+    kept: Path | None = None
+    """Folder of the files that were stored with a run or package, which are then found alone."""
+
+
+_OWN = Shelf()
+# Settings from elsewhere are loaded in a few places. A parameter would pass through all loaders and all validators.
+_SHELF: ContextVar[Shelf] = ContextVar("shelf", default=_OWN)
 
 
 @contextmanager
-def settings_from_elsewhere() -> Iterator[None]:
+def settings_from_elsewhere(kept: Path | None = None) -> Iterator[None]:
     """Refuse imports by `module:Name` while the context lasts, because the author of the settings may be hostile.
 
-    Plug-ins that are installed, or that this process loaded before, are still found.
+    Plug-ins that are installed, or that this process loaded before, are still found. `kept`: folder of the only files
+    that are found; None: as around this context.
     """
-    token = _FROM_ELSEWHERE.set(True)
+    token = _SHELF.set(Shelf(is_own=False, kept=kept or shelf().kept))
     try:
         yield
     finally:
-        _FROM_ELSEWHERE.reset(token)
+        _SHELF.reset(token)
 
 
-def are_settings_from_elsewhere() -> bool:
-    """Return whether `settings_from_elsewhere` is in force."""
-    return _FROM_ELSEWHERE.get()
+def shelf() -> Shelf:
+    """Return the places that are in force."""
+    return _SHELF.get()
 
 
 def installed_plugins(group: str) -> list[Plugin]:
@@ -128,7 +140,7 @@ class PluginKind:
         if not is_target(name):
             raise self._unknown(name, [*self.shipped(), *(each.name for each in offered)])
         is_known = (self.group, name) in _LOADED or any(each.target == name for each in offered)
-        if are_settings_from_elsewhere() and not is_known:
+        if not shelf().is_own and not is_known:
             raise PluginError(
                 "settings from a recording or package may not import it",
                 where=self._where(name),

@@ -14,7 +14,7 @@ from typing import TypeVar
 from pydantic import ValidationError
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from config.plugins import PluginError, PluginKind, UnknownPluginError, are_settings_from_elsewhere
+from config.plugins import PluginError, PluginKind, UnknownPluginError, shelf
 from config.settings import Settings, keys_at
 
 
@@ -88,7 +88,7 @@ def as_its_kind(
     try:
         schema = find_kind(package, named.kind, base, plugins)
     except ValueError as error:
-        if stand_in is not None and are_settings_from_elsewhere():
+        if stand_in is not None and not shelf().is_own:
             return stand_in.model_validate_json(json.dumps(given))
         told = f"{error.what}; {error.do}" if isinstance(error, PluginError) else str(error)
         problem = PydanticCustomError("no_such_kind", "{told}", {"told": told})

@@ -1,21 +1,12 @@
 """Places of settings files: shipped, of a robot's plug-in, or kept with a run."""
 
 import hashlib
-from collections.abc import Iterator
-from contextlib import contextmanager
-from contextvars import ContextVar
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Final
 
 from config import CONFIG_DIR
-from config.plugins import (
-    PluginError,
-    PluginKind,
-    UnknownPluginError,
-    are_settings_from_elsewhere,
-    settings_from_elsewhere,
-)
+from config.plugins import PluginError, PluginKind, UnknownPluginError, shelf
 from config.robot_plugins import ROBOTS, find_robot_kind, is_robot
 from config.settings import SettingsError
 
@@ -28,24 +19,6 @@ YAML_SUFFIXES: Final = (".yaml", ".yml")
 
 FILES = "files"
 """Folder of the stored files that are no settings."""
-
-# A replay builds its runtime in one call, and all loaders below look here. A parameter would appear in fifty
-# signatures for the replay alone.
-_KEPT: ContextVar[Path | None] = ContextVar("kept settings", default=None)
-
-
-@contextmanager
-def settings_override(folder: Path) -> Iterator[None]:
-    """Find only the settings stored in `folder` while the context lasts.
-
-    `find_config` finds it as `<kind>/<kept_name>`, `find_beside` as `files/<kept_name>`.
-    """
-    token = _KEPT.set(folder)
-    try:
-        with settings_from_elsewhere():
-            yield
-    finally:
-        _KEPT.reset(token)
 
 
 def kept_name(name_or_path: str) -> str:
@@ -64,7 +37,7 @@ def find_beside(settings: Path, name: str) -> Path:
 
     `settings`: path of the settings file. `name`: relative, absolute, or with a tilde.
     """
-    kept = _KEPT.get()
+    kept = shelf().kept
     return settings.parent / Path(name).expanduser() if kept is None else kept / FILES / kept_name(name)
 
 
@@ -91,14 +64,14 @@ def find_config(kind: str, name_or_path: str) -> Path:
     plug-in. Within `settings_from_elsewhere` a path is refused, because its file may name code. Raises SettingsError
     that lists the names when there is no such file.
     """
-    kept = _KEPT.get()
+    kept = shelf().kept
     if kept is not None:
         path = kept / kind / kept_name(name_or_path)
         if path.is_file():
             return path
         raise SettingsError(f"is not among the settings in {kind} that were kept with the run", where=name_or_path)
     given = Path(name_or_path)
-    if given.suffix in YAML_SUFFIXES and given.is_file() and not are_settings_from_elsewhere():
+    if given.suffix in YAML_SUFFIXES and given.is_file() and shelf().is_own:
         return given
     names, folder = shipped_names(kind), CONFIG_DIR / kind
     # Compared and not joined: a folder and a foreign name together could lead anywhere. There are folders within.

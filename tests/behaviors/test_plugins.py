@@ -8,9 +8,8 @@ import pytest
 
 from behaviors.contained_behaviour import failures_of
 from behaviors.repertoire import load_repertoire
-from config.plugins import loaded_plugins
+from config.plugins import loaded_plugins, settings_from_elsewhere
 from config.settings import SettingsError
-from config.settings_files import settings_override
 from hal.robot import STANDSTILL
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from tests.behaviors.helpers import ROBOT, counts, sensed
@@ -21,7 +20,7 @@ def kept(folder: Path, kind: str, settings: Path) -> AbstractContextManager[None
     """Return the context of a replay, which finds the settings by the name of their file."""
     (folder / kind).mkdir()
     settings.rename(folder / kind / settings.name)
-    return settings_override(folder)
+    return settings_from_elsewhere(folder)
 
 
 def refused_task(path: Path) -> str:

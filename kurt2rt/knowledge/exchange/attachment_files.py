@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from config.settings_files import settings_override
+from config.plugins import settings_from_elsewhere
 
 MOST_FILES = 1000
 LARGEST_BYTES = 256_000_000
@@ -47,7 +47,7 @@ def extracted_settings(files: Mapping[str, bytes]) -> Iterator[None]:
             path.parent.mkdir(parents=True, exist_ok=True)
             with path.open("xb") as file:  # refuses to replace a file of another name
                 file.write(data)
-        with settings_override(Path(folder, "settings")):
+        with settings_from_elsewhere(Path(folder, "settings")):
             yield
 
 
