@@ -5,17 +5,19 @@ import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, ValidationError
 
 from behaviors.repertoire_settings import RepertoireSettings, TaskAction, TaughtAction
 from config.settings import Settings, load_settings
 from config.settings_files import FILES, find_beside, find_config, kept_name
 from hal.robot_settings import RobotSettings
+from kurt2rt.core.message_fields import Real, check_of, wire_error
 from kurt2rt.core.rla.statistics import Expectation, Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.knowledge.exchange.json_checks import require_int, require_number, require_text
 from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
-from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
+from kurt2rt.knowledge.journal.event_codec import Id, Number, StoredText, decode_event, encode_event
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
@@ -24,6 +26,7 @@ ROBOT, TASK = "settings/robot.json", "settings/task.json"
 KNOWLEDGE, STATISTICS = "knowledge.jsonl", "statistics.json"
 SETTINGS = "settings/"
 """Prefix of the files that loaders of settings look for."""
+_TEXT = check_of(StoredText)
 _ABSENT = (None, [""])
 """Values of a key that was left out: nothing, and the one behaviour without a name."""
 
@@ -70,7 +73,7 @@ def decode_lessons(data: bytes) -> list[JournalEntry]:
         for number, line in enumerate(data.decode().splitlines(), start=1):
             content = json.loads(line)
             event = decode_event(json.dumps(content["event"]), f"{KNOWLEDGE}: line {number}")
-            lessons.append(JournalEntry(event, require_text(content["stamped_at"])))
+            lessons.append(JournalEntry(event, _TEXT("stamped_at", content["stamped_at"])))
     except (KnowledgeError, ValueError, KeyError, TypeError, RecursionError) as error:
         raise ValueError(f"{KNOWLEDGE} cannot be read: {error}") from error
     return lessons
@@ -93,31 +96,43 @@ def encode_statistics(statistics: Statistics) -> bytes:
     ).encode()
 
 
+def _unpacked(text: object) -> bytes:
+    return base64.b64decode(_TEXT("base64", text), validate=True)
+
+
+_Packed = Annotated[bytes, BeforeValidator(_unpacked)]
+
+
+class _Saved(BaseModel):
+    """Statistics as rows."""
+
+    uses: tuple[tuple[Number, Number], ...]
+    transitions: tuple[tuple[Number, Number, Number], ...]
+    values: tuple[tuple[Number, Real], ...]
+    numbers: dict[StoredText, Real]
+    expectations: tuple[tuple[Number, StoredText, Id, Real, _Packed, _Packed], ...]
+    answer_delays: dict[StoredText, tuple[Number, ...]]
+
+
 def decode_statistics(data: bytes) -> Statistics:
     """Return the statistics in the JSON of `encode_statistics`. Raises ValueError, which names the file."""
     try:
-        content: dict[str, Any] = json.loads(data)
-        return Statistics(
-            {require_int(rla_id): require_int(count) for rla_id, count in content["uses"]},
-            {
-                (require_int(before), require_int(after)): require_int(count)
-                for before, after, count in content["transitions"]
-            },
-            {require_int(rla_id): require_number(value) for rla_id, value in content["values"]},
-            {require_text(name): require_number(value) for name, value in content["numbers"].items()},
-            {
-                require_int(rla_id): Expectation(
-                    require_text(lesson), require_int(count, 1), require_number(ticks), _packed(mean), _packed(squares)
-                )
-                for rla_id, lesson, count, ticks, mean, squares in content["expectations"]
-            },
-            {
-                require_text(teacher): tuple(map(require_int, took))
-                for teacher, took in content["answer_delays"].items()
-            },
-        )
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        saved = _Saved.model_validate(json.loads(data))
+    except ValidationError as error:
+        raise ValueError(f"{STATISTICS} cannot be read: {wire_error('its content', error)}") from error
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"{STATISTICS} cannot be read: {type(error).__name__}: {error}") from error
+    return Statistics(
+        dict(saved.uses),
+        {(before, after): count for before, after, count in saved.transitions},
+        dict(saved.values),
+        saved.numbers,
+        {
+            rla_id: Expectation(lesson, count, ticks, mean, squares)
+            for rla_id, lesson, count, ticks, mean, squares in saved.expectations
+        },
+        saved.answer_delays,
+    )
 
 
 def _encode_lessons(entries: Iterable[StoredEntry | JournalEntry]) -> bytes:
@@ -178,7 +193,3 @@ def _used_by_actions(repertoire: Path, seen: set[tuple[str, str]]) -> Iterator[t
 
 def _text(packed: bytes) -> str:
     return base64.b64encode(packed).decode()
-
-
-def _packed(text: object) -> bytes:
-    return base64.b64decode(require_text(text), validate=True)

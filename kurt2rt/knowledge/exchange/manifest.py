@@ -2,28 +2,27 @@
 
 from collections.abc import Iterable, Mapping
 from datetime import datetime
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from kurt2rt.core.rla.condition import LevelFeatures
 from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.exchange.attachments import KNOWLEDGE, STATISTICS
-from kurt2rt.knowledge.exchange.json_checks import require_text
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding
 from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.event_codec import StoredText
 
 _BYTES = np.dtype("<f8").itemsize
-_Text = Annotated[str, AfterValidator(require_text)]
 
 
 class _Features(BaseModel):
     model_config = ConfigDict(strict=True, frozen=True)
-    hash: _Text
-    names: list[_Text]
+    hash: StoredText
+    names: list[StoredText]
 
     @property
     def of_level(self) -> LevelFeatures:
@@ -34,14 +33,14 @@ class Manifest(BaseModel):
     """Fields of a manifest that an import needs; a manifest may have more."""
 
     model_config = ConfigDict(strict=True, frozen=True)
-    task: _Text
+    task: StoredText
     """Name of the task whose settings are in the file."""
-    exported_at: _Text
+    exported_at: StoredText
     """UTC, ISO 8601."""
-    system: _Text
-    robot: _Text
+    system: StoredText
+    robot: StoredText
     features: _Features
-    levels: dict[_Text, _Features]
+    levels: dict[StoredText, _Features]
 
     @property
     def binding(self) -> KnowledgeBinding:

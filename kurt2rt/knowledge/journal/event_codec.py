@@ -35,25 +35,25 @@ def _encodable(text: str) -> str:
     return text
 
 
-_Id = Annotated[int, Int(1, 2**63 - 1)]
-_Number = Annotated[int, Int(0, 2**63 - 1)]
+Id = Annotated[int, Int(1, 2**63 - 1)]
+Number = Annotated[int, Int(0, 2**63 - 1)]
 _Real = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 _Opinion = Annotated[int, OneOf((-1, 0, 1))]
-_Text = Annotated[str, Strict(), AfterValidator(_encodable)]
+StoredText = Annotated[str, Strict(), AfterValidator(_encodable)]
 _Word = Annotated[str, Strict(), AfterValidator(lambda text: sys.intern(_encodable(text)))]
 """Text that many events have: interned, so that memory holds it once."""
 
 _ORIGIN = {
-    "command_id": _Text,
+    "command_id": StoredText,
     "teacher": _Word,
     "phase": Annotated[Phase, OneOf(tuple(each.value for each in Phase), Phase)],
-    "tick": _Number,
+    "tick": Number,
 }
 _FIELDS: dict[type, tuple[str, dict[str, Any]]] = {
     RlaCreated: (
         "created",
         {
-            "rla_id": _Id,
+            "rla_id": Id,
             "condition": tuple[_Real, ...],
             "action": _Word,
             "radius": _Real | None,
@@ -61,25 +61,25 @@ _FIELDS: dict[type, tuple[str, dict[str, Any]]] = {
             "level": _Word,
         },
     ),
-    ActionReplaced: ("replaced", {"rla_id": _Id, "action": _Word, "instead_of": _Word}),
-    ActionWithdrawn: ("withdrawn", {"rla_id": _Id, "instead_of": _Word}),
-    RlaDeleted: ("deleted", {"rla_id": _Id}),
+    ActionReplaced: ("replaced", {"rla_id": Id, "action": _Word, "instead_of": _Word}),
+    ActionWithdrawn: ("withdrawn", {"rla_id": Id, "instead_of": _Word}),
+    RlaDeleted: ("deleted", {"rla_id": Id}),
     RlaRewarded: (
         "rewarded",
         {
-            "rla_id": _Id,
+            "rla_id": Id,
             "value": Annotated[int, OneOf((1, -1))],
-            "decided_at_tick": _Number,
-            "credits": tuple[tuple[_Id, _Real], ...],
+            "decided_at_tick": Number,
+            "credits": tuple[tuple[Id, _Real], ...],
             "said": _Opinion | None,
         },
     ),
-    Appraised: ("appraised", {"appraisal": _Word, "value": _Opinion, "decided_at_tick": _Number}),
-    SituationNamed: ("named", {"name": _Text, "situation": tuple[_Real, ...], "level": _Text}),
-    LessonUndone: ("undone", {"lesson": _Text}),
-    LessonRedone: ("redone", {"lesson": _Text}),
-    SessionBegun: ("session begun", {"name": _Text}),
-    SessionEnded: ("session ended", {"lasted_ticks": _Number}),
+    Appraised: ("appraised", {"appraisal": _Word, "value": _Opinion, "decided_at_tick": Number}),
+    SituationNamed: ("named", {"name": StoredText, "situation": tuple[_Real, ...], "level": StoredText}),
+    LessonUndone: ("undone", {"lesson": StoredText}),
+    LessonRedone: ("redone", {"lesson": StoredText}),
+    SessionBegun: ("session begun", {"name": StoredText}),
+    SessionEnded: ("session ended", {"lasted_ticks": Number}),
 }
 """Name of each kind of event, and the fields that come before those of its origin."""
 
