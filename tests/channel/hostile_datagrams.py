@@ -9,10 +9,11 @@ import aiocoap
 import cbor2
 from aiocoap.optiontypes import OpaqueOption
 
-from kurt2rt.channel.protocol.codec import BODIES, PATHS, WireError, build_request, decode_request, encode_request
+from kurt2rt.channel.protocol.codec import BODIES, PATHS, build_request, decode_request, encode_request
 from kurt2rt.channel.protocol.requests import Request
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.core.decision.goal import PartialGoal
+from kurt2rt.core.message_fields import WireError
 from kurt2rt.core.rla.rla import Phase
 
 _MOST_BYTES = 1600

@@ -4,11 +4,12 @@ import random
 from collections.abc import Coroutine
 from typing import Any
 
-from kurt2rt.channel.protocol.codec import WireError, decode_request, encode_request
+from kurt2rt.channel.protocol.codec import decode_request, encode_request
 from kurt2rt.channel.protocol.requests import StreamRequest
 from kurt2rt.channel.server.channel import describe_robot
 from kurt2rt.channel.server.reply import Reply, ReplyStatus
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender
+from kurt2rt.core.message_fields import WireError
 from kurt2rt.core.teaching.commands import Drive
 from kurt2rt.core.teaching.message_fields import HIGHEST_SPEED_M_S
 from kurt2rt.service.assembly import RobotService

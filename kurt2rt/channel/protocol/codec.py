@@ -18,20 +18,6 @@ from kurt2rt.core.teaching.commands import Single, Stop, Stream
 from kurt2rt.core.teaching.message_fields import plain
 from kurt2rt.runs.explain.facts import DecisionFacts
 
-__all__ = [
-    "CONTENT_FORMAT",
-    "FACTS",
-    "PATHS",
-    "WireError",
-    "decode_answer",
-    "decode_request",
-    "decode_state",
-    "encode_answer",
-    "encode_request",
-    "encode_state",
-    "path_of",
-]
-
 CONTENT_FORMAT = 60
 """CoAP's content format of application/cbor."""
 

@@ -2,6 +2,7 @@
 
 import asyncio
 import hashlib
+from collections import OrderedDict
 from collections.abc import Awaitable, Callable, Coroutine, Mapping
 from dataclasses import replace
 from functools import partial
@@ -29,7 +30,6 @@ from kurt2rt.channel.protocol.requests import (
 )
 from kurt2rt.channel.protocol.simulation import EXAM, SIMULATION, WORLD, WorldView
 from kurt2rt.channel.server.dependencies import ChannelDependencies, TeacherNow
-from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, not_simulated, refusal, restarted, unsaved
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.teaching.inbox import SpeedChanged
@@ -38,6 +38,42 @@ from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runtime import Runtime
 from simbridge.contracts.world_refusal import WorldRefusal, WorldRefusedError
+
+
+class PendingCommands:
+    """Replies by command id, pending ones included; the oldest settled replies are dropped."""
+
+    def __init__(self, capacity: int = 1024) -> None:
+        self._capacity = capacity
+        self._replies: OrderedDict[str, asyncio.Future[Reply]] = OrderedDict()
+
+    def __len__(self) -> int:
+        return len(self._replies)
+
+    def get(self, command_id: str) -> asyncio.Future[Reply] | None:
+        """Return the reply to an earlier command, perhaps pending; None for a new command."""
+        return self._replies.get(command_id)
+
+    def begin(self, command_id: str) -> asyncio.Future[Reply]:
+        """Add a new command and return its pending reply."""
+        self._drop_oldest()
+        reply = self._replies[command_id] = asyncio.get_running_loop().create_future()
+        return reply
+
+    def settle(self, command_id: str, reply: Reply) -> None:
+        """Resolve a pending reply; commands that did not come over the network are left out."""
+        waiting = self._replies.get(command_id)
+        if waiting is not None and not waiting.done():
+            waiting.set_result(reply)
+
+    def _drop_oldest(self) -> None:
+        while len(self._replies) >= self._capacity:
+            # A pending command must not be mistaken for a new one when its copy comes.
+            oldest = next((command_id for command_id, reply in self._replies.items() if reply.done()), None)
+            if oldest is None:
+                return
+            del self._replies[oldest]
+
 
 WORLD_REFUSALS: Mapping[WorldRefusal, RefusalCode] = {
     WorldRefusal.NO_WALL: RefusalCode.NO_WALL,

@@ -21,11 +21,10 @@ from kurt2rt.channel.protocol.requests import (
     TickRequest,
     WhyRequest,
 )
+from kurt2rt.channel.server.datagram_filter import PerDeviceRateLimit
 from kurt2rt.channel.server.dependencies import ChannelDependencies
 from kurt2rt.channel.server.lesson_list import LessonList
-from kurt2rt.channel.server.off_tick_requests import OffTickCommand, OffTickRequests
-from kurt2rt.channel.server.pending_commands import PendingCommands
-from kurt2rt.channel.server.rate_limit import PerDeviceRateLimit
+from kurt2rt.channel.server.off_tick_requests import OffTickCommand, OffTickRequests, PendingCommands
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal, restarted, unsaved
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import MID

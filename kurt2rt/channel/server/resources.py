@@ -8,10 +8,11 @@ from aiocoap import oscore
 from aiocoap.error import RenderableError
 from aiocoap.numbers.constants import TransportTuning
 
-from kurt2rt.channel.protocol.codec import CONTENT_FORMAT, PATHS, WireError, decode_request, encode_answer
+from kurt2rt.channel.protocol.codec import CONTENT_FORMAT, PATHS, decode_request, encode_answer
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, malformed
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender
 from kurt2rt.channel.server.sealed_request import SealedRequest
+from kurt2rt.core.message_fields import WireError
 
 _CODES = {
     ReplyStatus.DONE: aiocoap.CHANGED,

@@ -9,10 +9,11 @@ from pathlib import Path
 import anyio
 import anyio.to_thread
 
-from kurt2rt.channel.protocol.codec import WireError, decode_state
+from kurt2rt.channel.protocol.codec import decode_state
 from kurt2rt.channel.protocol.limits import COMMAND_ID_BYTES
 from kurt2rt.channel.protocol.requests import StopRequest
 from kurt2rt.channel.security.pairing import PORT, Device, read_device
+from kurt2rt.core.message_fields import WireError
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.manual_drive import BEAT_S, ManualDrive, PressHandle
 from kurt2rt.teacher.client.request_sender import RequestSender

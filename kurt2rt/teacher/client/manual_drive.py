@@ -7,9 +7,10 @@ from functools import partial
 
 import anyio
 
-from kurt2rt.channel.protocol.codec import WireError, decode_answer, encode_request, path_of
+from kurt2rt.channel.protocol.codec import decode_answer, encode_request, path_of
 from kurt2rt.channel.protocol.requests import StreamRequest
 from kurt2rt.channel.protocol.state import State
+from kurt2rt.core.message_fields import WireError
 from kurt2rt.core.outcome import RefusalCode
 from kurt2rt.core.teaching.commands import Drive, HoldAction, Watch
 from kurt2rt.teacher.client.answer import Answer, answer_of, local_refusal

@@ -8,11 +8,11 @@ from typing import Any, TypeVar
 import anyio
 import anyio.lowlevel
 
-from kurt2rt.channel.protocol.codec import WireError, decode_answer, encode_request, path_of
+from kurt2rt.channel.protocol.codec import decode_answer, encode_request, path_of
 from kurt2rt.channel.protocol.limits import COMMAND_ID_BYTES, PART_BYTES
 from kurt2rt.channel.protocol.requests import CommandRequest, Request, StopRequest, tick_request
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.core.message_fields import Number, check_of
+from kurt2rt.core.message_fields import Number, WireError, check_of
 from kurt2rt.core.outcome import RefusalCode
 from kurt2rt.core.teaching.commands import Single
 from kurt2rt.platform.file_part import FilePart

@@ -11,14 +11,13 @@ import anyio
 from anyio.abc import TaskGroup
 from anyio.streams.memory import MemoryObjectSendStream
 
-from kurt2rt.channel.protocol.codec import WireError
 from kurt2rt.channel.protocol.health_text import lines_of
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.requests import CommandRequest, ExportRequest, SaveRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.decision import ASKING
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.message_fields import Check, checks_of
+from kurt2rt.core.message_fields import Check, WireError, checks_of
 from kurt2rt.core.outcome_text import Surface
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import CRITIC, MID, Phase

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from kurt2rt.channel.protocol.codec import (
     BODIES,
     PATHS,
-    WireError,
     build_request,
     decode_answer,
     decode_request,
@@ -36,6 +35,7 @@ from kurt2rt.core.message_fields import (
     OneOf,
     Text,
     UpTo,
+    WireError,
 )
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.teaching.message_fields import MOST_SEGMENTS, GoalField

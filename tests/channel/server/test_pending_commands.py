@@ -1,6 +1,6 @@
 """The same command sent again gets the same reply, for as long as anybody may send it."""
 
-from kurt2rt.channel.server.pending_commands import PendingCommands
+from kurt2rt.channel.server.off_tick_requests import PendingCommands
 from kurt2rt.channel.server.reply import done
 
 

@@ -1,4 +1,4 @@
-from kurt2rt.channel.server.rate_limit import TokenBucket
+from kurt2rt.channel.server.datagram_filter import TokenBucket
 from tests.channel.clock import Clock
 
 
