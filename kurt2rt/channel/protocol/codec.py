@@ -34,15 +34,13 @@ _COMMANDS = (*get_args(Stream), *(each for each in get_args(Single) if each is n
 PATHS: Mapping[str, Any] = {kind.path: kind for kind in (*REQUESTS, *_COMMANDS)}
 """Class of the request or of the command of each path; /state is not among them."""
 
-_HEADS: Mapping[type, dict[str, Check]] = {kind: checks_of(kind) for kind in (TickRequest, StreamRequest)}
-_CHECKS = {path: checks_of(kind) for path, kind in PATHS.items()}
-_STREAMS = {kind.path for kind in get_args(Stream)}
-_SINGLES = {kind.path for kind in _COMMANDS} - _STREAMS
+_HEADS: Mapping[Any, type[StreamRequest | TickRequest]] = {
+    kind: StreamRequest if kind in get_args(Stream) else TickRequest for kind in _COMMANDS
+}
+"""Class of the request that carries a command; its fields come first in the body."""
 
 BODIES: Mapping[str, Mapping[str, Check]] = {
-    **_CHECKS,
-    **{path: _HEADS[StreamRequest] | _CHECKS[path] for path in _STREAMS},
-    **{path: _HEADS[TickRequest] | _CHECKS[path] for path in _SINGLES},
+    path: (checks_of(_HEADS[kind]) if kind in _HEADS else {}) | checks_of(kind) for path, kind in PATHS.items()
 }
 """Name and check of each place in the body of a path, in order."""
 
@@ -54,9 +52,12 @@ def path_of(request: Request) -> str:
 
 def encode_request(request: Request) -> bytes:
     """Return the body of a request. Raises WireError if the robot would refuse it."""
-    body = [check(name, getattr(request, name)) for name, check in _HEADS.get(type(request), {}).items()]
     own = request.command if isinstance(request, TickRequest | StreamRequest) else request
-    body += [plain(check(name, getattr(own, name))) for name, check in _CHECKS[path_of(request)].items()]
+    values = (
+        (name, check, getattr(request if hasattr(request, name) else own, name))
+        for name, check in BODIES[path_of(request)].items()
+    )
+    body = [plain(check(name, value)) for name, check, value in values]
     return encode_plainly(body)
 
 
@@ -79,12 +80,10 @@ def build_request(path: str, values: Mapping[str, Any]) -> Request:
     A command has no teacher yet; the id of one that counts once lacks the teacher's name.
     """
     kind = PATHS[path]
-    if path in _SINGLES:
-        return tick_request(kind, **values)
-    if path in _STREAMS:
-        return stream_request(kind, **values)
-    request: Request = kind(**values)
-    return request
+    if kind not in _HEADS:
+        request: Request = kind(**values)
+        return request
+    return (stream_request if _HEADS[kind] is StreamRequest else tick_request)(kind, **values)
 
 
 def encode_answer(answer: Mapping[str, Any]) -> bytes:
