@@ -24,7 +24,8 @@ _STAND_M_S = 0.02
 def action_groups(repertoire: str) -> Mapping[str, str]:
     """Return the group of each action of a repertoire: ahead, back, stand, or a bend or spin to one side.
 
-    Actions that were taught themselves are groups of their own.
+    Actions of one group look alike to a person who watches; contradictions and mistakes are told by it. Actions that
+    were taught themselves are groups of their own.
 
     Raises:
         config.settings.SettingsError: for a missing or invalid repertoire.

@@ -44,7 +44,7 @@ class DrivesOn(Protocol):
 
 @runtime_checkable
 class HasSetPoints(Protocol):
-    """Action that drives at the same set points in each of its ticks."""
+    """Action that drives at the same set points in each tick, so that its way is known in advance."""
 
     @property
     def wheel_speeds(self) -> WheelSpeeds:

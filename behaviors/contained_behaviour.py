@@ -63,7 +63,7 @@ class ContainedBehaviour:
 
 
 def failures_of(repertoire: Iterable[Behaviour]) -> str:
-    """Return the errors of all actions of plug-ins in a line; empty without one."""
+    """Return the errors of a repertoire's plug-ins in a line, for the health report; empty without one."""
     return "; ".join(each.failure for each in repertoire if isinstance(each, ContainedBehaviour) and each.failure)
 
 

@@ -19,7 +19,10 @@ class KeepDistanceNumbers(NamedTuple):
 
 
 def steer(front_m: float, back_m: float, want: KeepDistanceNumbers) -> tuple[float, float]:
-    """Return the speeds of the left and the right side in m/s for the distances in m of both sensors."""
+    """Return the speeds of the left and the right side in m/s that lead back to the set distance from a wall.
+
+    `front_m`, `back_m`: distances in m of the sensors that look at the wall. A batch compiles this function, too.
+    """
     too_far_m = 0.5 * (front_m + back_m) - want.distance_m
     turned_away = (front_m - back_m) / want.baseline_m
     turn = want.towards_left * (want.gain_per_m * too_far_m + turned_away)

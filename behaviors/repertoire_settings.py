@@ -29,7 +29,7 @@ ActionName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$"), AfterValid
 
 
 class MotorAction(Settings):
-    """Fixed speeds of both sides."""
+    """Entry of a repertoire: fixed speeds of both sides in m/s until another action drives."""
 
     kind: Literal["motor"]
     name: ActionName
@@ -38,7 +38,10 @@ class MotorAction(Settings):
 
 
 class KeepDistanceAction(Settings):
-    """Control loop along a wall (behaviors.keep_distance)."""
+    """Entry of a repertoire: a control loop that keeps `distance_m` from a wall (behaviors.keep_distance).
+
+    The robot drives at `speed_m_s`; the wall lies on the side to which both sensors look, in front and at the back.
+    """
 
     kind: Literal["keep_distance"]
     name: ActionName
@@ -50,7 +53,7 @@ class KeepDistanceAction(Settings):
 
 
 class TurnByAngleAction(Settings):
-    """Turn on the spot by an angle, left positive."""
+    """Entry of a repertoire: a turn on the spot by `angle_deg`, left positive, which ends by itself."""
 
     kind: Literal["turn_by_angle"]
     name: ActionName
@@ -128,7 +131,7 @@ ActionSettings = Annotated[
 
 
 class RepertoireSettings(Settings):
-    """Repertoire of valid actions (paper, III.A.2)."""
+    """Schema of a repertoire's file: the actions that teachers may choose (paper, III.A.2)."""
 
     name: str
     actions: Annotated[tuple[ActionSettings, ...], Field(min_length=1)]

@@ -7,7 +7,7 @@ from hal.robot_settings import GeometrySettings
 
 
 class TurnByAngle:
-    """Turn to the left by a positive angle, to the right by a negative one, then standstill."""
+    """Action that turns on the spot by an angle, to the left if positive, and then stands."""
 
     lost = False
 

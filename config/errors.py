@@ -6,7 +6,7 @@ from typing import ClassVar, Self
 
 
 class ExitCode(IntEnum):
-    """Exit code of a process."""
+    """Exit code of each `kurt2rt` program; an error class names its own in `UserError.exit_code`."""
 
     DONE = 0
     FAILED = 1
@@ -39,7 +39,7 @@ class TextCode(StrEnum):
 
 
 class UserError(Exception):
-    """An error that the user can mend. `str` of it is the line `<where>: <what is wrong>; <what to do>`."""
+    """Error that the user can mend. `str` of it is the line `<where>: <what is wrong>; <what to do>`."""
 
     exit_code: ClassVar[ExitCode] = ExitCode.REFUSED
     """Exit code of a command that ends with an error of this class."""
@@ -63,7 +63,7 @@ class UserError(Exception):
 
 
 class CodedError(UserError):
-    """An error whose line is the text of a code."""
+    """User error with a code, from whose text its line is made, so that callers can tell the cause."""
 
     code: TextCode
 

@@ -24,7 +24,7 @@ _ERROR_LENGTH = 300
 
 
 class PluginError(UserError, ValueError):
-    """Plug-in that is missing or unusable."""
+    """Plug-in that is not found, cannot be imported, or does not fit its kind."""
 
 
 class UnknownPluginError(PluginError):

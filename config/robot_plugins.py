@@ -81,7 +81,7 @@ def find_task_of_robot(robot: str) -> str | None:
 
 
 class RobotTask(NamedTuple):
-    """Task in the folder of a robot's plug-in."""
+    """Task whose YAML file lies in the folder of a robot's plug-in, as `plugin_tasks` lists it."""
 
     name: str
     """Name on the command line, such as `school/fleeing`."""

@@ -19,7 +19,7 @@ from config.settings import Settings, keys_at
 
 
 class KindSettings(Settings):
-    """Base of settings that come in kinds."""
+    """Base of settings whose key `kind` names their class, such as those of metrics and policies."""
 
     kind: str
 

@@ -22,9 +22,10 @@ FILES = "files"
 
 
 def kept_name(name_or_path: str) -> str:
-    """Return the name of a stored file: the shipped one for settings, or a unique one for each path.
+    """Return the name under which a run or a package keeps a file of settings: equal names, equal files.
 
-    The name never leads out of a folder, because the author of a recorded run may be hostile.
+    It is the shipped name, or a unique one for each path. It never leads out of a folder, because the author of a
+    recorded run may be hostile.
     """
     path = Path(name_or_path)
     if not path.suffix and path.name == name_or_path:
@@ -33,9 +34,9 @@ def kept_name(name_or_path: str) -> str:
 
 
 def find_beside(settings: Path, name: str) -> Path:
-    """Return the path of a file that settings name, relative to their folder; it need not exist.
+    """Return the path of a file that settings name, such as a knowledge file of a repertoire; it need not exist.
 
-    `settings`: path of the settings file. `name`: relative, absolute, or with a tilde.
+    `settings`: path of the settings file. `name`: relative to its folder, absolute, or with a tilde.
     """
     kept = shelf().kept
     return settings.parent / Path(name).expanduser() if kept is None else kept / FILES / kept_name(name)

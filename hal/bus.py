@@ -78,7 +78,7 @@ _KINDS = "virtual:NAME, shared:NAME or a SocketCAN interface such as can0"
 
 
 class BusError(UserError, OSError):
-    """The bus cannot be opened or used."""
+    """Link to the robot, of CAN or another kind, that cannot be opened or used."""
 
 
 class CanBus:

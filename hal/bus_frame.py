@@ -16,7 +16,10 @@ _LONGEST = 8
 
 
 def pack_bus_frame(frame: can.Message) -> bytes:
-    """Return the 16 bytes of a frame. Raises ValueError for a frame that is not classic CAN."""
+    """Return the 16 bytes of a frame in Linux's layout.
+
+    Raises ValueError for a frame that is not classic CAN.
+    """
     length = frame.dlc if frame.is_remote_frame else len(frame.data)
     if length > _LONGEST or frame.is_fd:
         raise ValueError(f"frame 0x{frame.arbitration_id:X} is not of classic CAN: {length} bytes, FD {frame.is_fd}")

@@ -213,5 +213,5 @@ SIMULATED_HARDWARE_ID = 0x5349
 
 
 def hardware(hardware_id: int) -> str:
-    """Return the hardware id of an INFO frame as text, which names the simulated robot."""
+    """Return the hardware id of an INFO frame in words for the user, such as `hardware 7`."""
     return f"hardware {hardware_id}" + (" (the simulated robot)" if hardware_id == SIMULATED_HARDWARE_ID else "")

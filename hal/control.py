@@ -29,7 +29,7 @@ _SYSTEM = struct.Struct(">Hi2x")
 
 
 class Mode(IntEnum):
-    """Modes and system commands of the firmware."""
+    """First word of a CONTROL frame: the mode of a set point, or a system command of the firmware."""
 
     RAW = 0x0000
     SPEED = 0x0001
@@ -52,7 +52,7 @@ class RawSide(NamedTuple):
 
 
 class RawControl(NamedTuple):
-    """Open-loop command of both motors."""
+    """CONTROL frame of mode RAW: drive and brake of each side without a speed loop; every brake is one."""
 
     left: RawSide
     right: RawSide
@@ -80,7 +80,7 @@ class SpeedControl(NamedTuple):
 
 
 class SystemControl(NamedTuple):
-    """System command; `angle_urad` belongs to UPDATE_ANGLE."""
+    """CONTROL frame that drives no wheel: a system command. `angle_urad` belongs to UPDATE_ANGLE."""
 
     mode: Mode
     angle_urad: int = 0

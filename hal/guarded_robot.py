@@ -50,7 +50,7 @@ class Arrivals:
 
 
 class CanControllerState(Protocol):
-    """Error state of this machine's CAN controller (hal.bus_state.BusState)."""
+    """Error state of this machine's CAN controller, for the health report (hal.bus_state.BusState)."""
 
     error_frames: int
     controller: ControllerState
@@ -62,7 +62,7 @@ class CanControllerState(Protocol):
 
 
 class NoCanController:
-    """State for a robot without CAN: always error-active."""
+    """Error state that a robot without CAN reports: always error-active, never in trouble."""
 
     error_frames = 0
     controller = ControllerState.ACTIVE

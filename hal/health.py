@@ -8,7 +8,7 @@ from hal.guard_reason import GuardReason
 
 @dataclass(frozen=True, slots=True)
 class Health:
-    """Counters since the robot was opened, and present faults."""
+    """Counters of frames and errors since the robot was opened, and faults (`GuardedRobot.health`)."""
 
     frames: int
     """Frames received of those that the robot listens to, and error frames."""

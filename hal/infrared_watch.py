@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 
 class Board:
-    """Electronics that samples some of the distance sensors, and may freeze as a whole."""
+    """Converter board that samples some of the distance sensors; a frozen one stops the robot."""
 
     __slots__ = ("name", "still_s")
 

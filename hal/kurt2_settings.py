@@ -26,7 +26,7 @@ class SpeedMode(StrEnum):
 
 
 class CanSettings(Settings):
-    """Bus of the robot's controller."""
+    """CAN bus between KURT2's micro-controller and this machine: database of frames, bit rate, speed mode."""
 
     database: str
     bit_rate_bit_s: Annotated[int, Field(gt=0, le=1_000_000)]
@@ -34,7 +34,7 @@ class CanSettings(Settings):
 
 
 class Kurt2MotorSettings(MotorSettings):
-    """Motors, with what the modes SPEED and RAW mean."""
+    """KURT2's motors, with the speeds in m/s that drive values of the modes SPEED and RAW stand for."""
 
     full_speed_m_s: MetresPerSecond
     """Speed of 100 % in mode SPEED."""
@@ -86,7 +86,7 @@ class Kurt2InfraredSettings(InfraredSettings):
 
 
 class Kurt2Settings(RobotSettings):
-    """All settings of one KURT2."""
+    """Settings of one KURT2: those of every robot, with its CAN bus, motors and sensor channels."""
 
     kind: Literal["kurt2"] = "kurt2"
     can: CanSettings

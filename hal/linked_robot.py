@@ -22,7 +22,7 @@ _LONGEST_FAULT = 200
 
 
 class LinkPort:
-    """Port of the wheels over a link (hal.wheel_port.WheelPort)."""
+    """Port by which the guard sends set points over a `RobotLink` (hal.wheel_port.WheelPort)."""
 
     brake = _BRAKE
 

@@ -7,7 +7,7 @@ from hal.robot_settings import GeometrySettings
 
 
 class WheelMotion(NamedTuple):
-    """Distance of each side, of the centre between them, and turn to the left."""
+    """Motion of one look by the encoders: ways of both sides and the centre in m, turn to the left in rad."""
 
     left_m: float
     right_m: float
@@ -16,7 +16,7 @@ class WheelMotion(NamedTuple):
 
 
 class PlanePose(NamedTuple):
-    """Position and heading from above, counter-clockwise from x."""
+    """Dead-reckoned pose: x and y in m, heading in rad counter-clockwise from x, which counts whole turns."""
 
     x_m: float = 0.0
     y_m: float = 0.0

@@ -46,7 +46,10 @@ class SensorReadings(NamedTuple):
 
 
 def readings_before_the_first(sensors: int) -> SensorReadings:
-    """Return the readings of `sensors` distance sensors before anything arrived: all ages are infinite."""
+    """Return the readings of a robot from which nothing arrived yet: all ages are infinite, so the guard stands.
+
+    `sensors`: number of its distance sensors.
+    """
     return SensorReadings(
         time_s=-math.inf,
         infrared_counts=(0,) * sensors,

@@ -18,7 +18,7 @@ class RangeReport(NamedTuple):
 
 
 class WheelReport(NamedTuple):
-    """Turns of the wheels since the previous report."""
+    """Encoder ticks of both sides since the previous report, as a link without CAN delivers them."""
 
     at_s: float
     """Time of the measurement on the runtime's clock."""
@@ -30,7 +30,7 @@ class WheelReport(NamedTuple):
 
 
 class BumperReport(NamedTuple):
-    """Bumpers that are pressed at one time."""
+    """State of all bumpers at one time, as a link without CAN delivers it."""
 
     at_s: float
     """Time of the measurement on the runtime's clock."""

@@ -21,7 +21,7 @@ Coordinate = Annotated[float, Field(ge=-1, le=1)]
 
 
 class GeometrySettings(Settings):
-    """Outline, wheels and mass of the robot."""
+    """Outline, wheels and mass of the robot, for odometry, plans and the simulated body."""
 
     outline_length_m: Metres
     outline_width_m: Metres
@@ -33,7 +33,7 @@ class GeometrySettings(Settings):
 
 
 class MotorSettings(Settings):
-    """Motors with their speed loop."""
+    """Abilities of the motors and their speed loop, for the simulator and the watch over the wheels."""
 
     maximum_speed_m_s: MetresPerSecond
     acceleration_m_s2: MetresPerSecondSquared
@@ -44,7 +44,7 @@ class MotorSettings(Settings):
 
 
 class GuardSettings(Settings):
-    """Limits of the guard, for every decision."""
+    """Limits that the guard lays on every decision: speeds, ages of readings, and errors of the wheels."""
 
     maximum_speed_m_s: MetresPerSecond
     acceleration_m_s2: MetresPerSecondSquared
@@ -145,7 +145,7 @@ class InfraredSettings(Settings):
 
 
 class BumperEnd(StrEnum):
-    """The end of the robot a bumper guards."""
+    """End of the robot at which a bumper sits; a pressed bumper forbids to drive on in its direction."""
 
     FRONT = "front"
     REAR = "rear"

@@ -120,7 +120,7 @@ KEEPS = 0.985
 
 
 class SensorLimits(NamedTuple):
-    """Limits of all sensors of a robot."""
+    """Limits that all sensors of a robot share: lowest and highest counts, and time without a change."""
 
     lowest: float
     highest: float
@@ -177,7 +177,10 @@ class SensorSigns:
         self.restart(0)
 
     def set_witnesses(self, broken: Container[int]) -> None:
-        """Compare with the neighbours from now on only if neither is among the `broken` sensors."""
+        """Compare with the neighbours from now on only if neither is among the `broken` sensors.
+
+        `broken`: places in the sensor table.
+        """
         self._has_witnesses = self._looks_alike and self._before not in broken and self._after not in broken
         self.low_ticks = self.high_ticks = self.agreed_ticks = 0
         self._across_m = self._toward_m = 0.0

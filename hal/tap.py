@@ -23,6 +23,9 @@ class Tap(Protocol):
 
 
 def refuse_tap(tap: Tap | None, robot: str) -> None:
-    """Refuse a tap at the link of a robot without CAN, by its name. Raises config.settings.SettingsError."""
+    """Refuse a tap at the link of a robot without CAN, whose name is `robot`; do nothing without a tap.
+
+    Raises config.settings.SettingsError.
+    """
     if tap is not None:
         raise SettingsError("has no CAN frames to be seen", where=f"robot {robot}", do="leave it out")

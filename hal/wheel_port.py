@@ -6,7 +6,7 @@ from hal.robot import WheelSpeeds
 
 
 class WheelCommand(NamedTuple):
-    """Message with set points, ready to be sent often."""
+    """Set points as a message of the link; made once, then sent in each tick until they change."""
 
     message: object
     """Message in the form of its link, such as a CAN frame."""

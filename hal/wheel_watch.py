@@ -32,7 +32,7 @@ class WheelWatch:
         self._counted_at_s = -math.inf
 
     def set_command(self, command: WheelSpeeds) -> None:
-        """Set the set points in m/s that this tick's CONTROL carries."""
+        """Note the set points in m/s that this tick's CONTROL carries, for the checks that follow."""
         self._command = command
 
     def check(self, left_ticks: int, right_ticks: int, turned_s: float, responded_s: float, now_s: float) -> str:

@@ -59,7 +59,7 @@ from kurt2rt.platform.scheduler import Scheduler
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RuntimeOptions:
-    """Optional parts and settings of a runtime."""
+    """Choices of the caller of `build_runtime` beyond robot, task and knowledge; all have defaults."""
 
     statistics: StatisticsCounter | None = None
     """Counts to go on from; new ones by default."""
@@ -90,7 +90,7 @@ class RuntimeOptions:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Runtime:
-    """Parts of one robot mind that other rooms use."""
+    """One robot mind, built by `build_runtime`: all parts between the robot and the scheduler."""
 
     robot: RobotSettings
     task: TaskSettings

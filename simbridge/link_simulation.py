@@ -21,7 +21,7 @@ from simbridge.worlds.world_loading import load_world
 
 
 class PairedLink(SimulatedLink, Protocol):
-    """Link with both of its ends: the runtime's, and the simulated electronics of the robot."""
+    """Link of a plug-in's robot within this program, with the runtime's end and the simulated electronics."""
 
     @property
     def runtime_end(self) -> RobotLink:
@@ -39,7 +39,7 @@ OpenLink = Callable[[RobotSettings], PairedLink]
 
 @dataclass(frozen=True, slots=True)
 class LinkSimulationFactory(RobotWorlds):
-    """Opens simulations of a robot without CAN (`SimulationFactory`); can be sent to another process.
+    """Opener of simulations of a robot without CAN (`SimulationFactory`); can be sent to another process.
 
     There is no batch of such robots: a study drives them over their link.
     """

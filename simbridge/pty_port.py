@@ -11,7 +11,10 @@ _MOST_BYTES = 1 << 16
 
 
 class PtyPort:
-    """Pseudo-terminal (hal.byte_port.BytePort); other programs open its path `device`."""
+    """Pseudo-terminal as a robot's serial line (hal.byte_port.BytePort).
+
+    Other programs open its path `device`.
+    """
 
     waiting = 0
 

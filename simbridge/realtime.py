@@ -106,7 +106,7 @@ class RealtimeSimulation:
 
 
 class StandaloneRobot:
-    """Running robot and the end of a link that it owns; it survives the loss of the link."""
+    """Simulated robot of `kurt2rt sim`, in real time at its own end of a link, whose loss it survives."""
 
     def __init__(
         self, world: WorldSettings, end: RobotEnd, seed: int, *, start: int | None = None, cycle_s: float = 0.01

@@ -17,7 +17,10 @@ _LISTEN_S = 0.1
 
 
 class RobotEnd(Protocol):
-    """End of a link at which a simulated robot is. A lost link raises nothing: the robot stands until it is back."""
+    """Robot's end of a link that `kurt2rt sim` opens, and the maker of the simulated robot there.
+
+    A lost link raises nothing: the robot stands until it is back.
+    """
 
     @property
     def name(self) -> str:
@@ -44,7 +47,7 @@ class RobotEnd(Protocol):
 
 
 class ClosablePort(Protocol):
-    """Robot's end of the link of a plug-in. It is never lost: a lost line is the other end's."""
+    """Robot's end of a plug-in's link, as far as `LinkRobotEnd` needs it; it is never lost."""
 
     @property
     def name(self) -> str:
@@ -57,7 +60,7 @@ class ClosablePort(Protocol):
 
 
 class CanRobotEnd:
-    """KURT2's end of a CAN bus."""
+    """Simulated KURT2's end of a CAN bus that other programs use, for `kurt2rt sim`."""
 
     def __init__(self, settings: Kurt2Settings, bus: CanBus) -> None:
         """Own a bus from now on. Raises BusError if a robot is on the bus already."""
@@ -88,7 +91,7 @@ class CanRobotEnd:
 
 
 class LinkRobotEnd:
-    """End of the link of a plug-in, with the parts that its simulation has (simbridge.link_simulation)."""
+    """Robot's end of the link of a plug-in, with the makers of its simulated electronics and sensors."""
 
     error_text, lost = "", 0
 

@@ -29,7 +29,7 @@ from simbridge.worlds.world_settings import WorldSettings
 
 
 class Clearance:
-    """Distances in m to the nearest wall, in a world whose walls may be moved."""
+    """Finder of the distance in m from positions to the nearest wall or post; it follows moved walls."""
 
     def __init__(self, world: World) -> None:
         self._world = world
@@ -216,10 +216,11 @@ def run_live(simulation: RobotSimulation, driver: GuardedRobot, world: WorldSett
 
 
 class StallTolerant(GuardedRobot):
-    """Brakes while ticks cease, as every driver does, and releases that latch with the next tick.
+    """Base of drivers of a robot simulated in this program: the latch of a stall ends with the next tick.
 
-    Nothing can come to harm: wheels and walls are in the program that stalled. Never for a robot on a real bus, nor for
-    a simulator in another program, which goes on while this one stalls.
+    They brake while ticks cease, as every driver does. Nothing can come to harm: wheels and walls are in the program
+    that stalled. Never for a robot on a real bus, nor for a simulator in another program, which goes on while this one
+    stalls.
     """
 
     _requested: GuardReason | None = None
@@ -250,7 +251,7 @@ _STALLED: Final = (GuardReason.TICKS_CEASED,)
 
 
 class StallTolerantKurt2(StallTolerant, Kurt2):
-    """KURT2 whose simulation stalls with its driver."""
+    """Driver of a KURT2 that is simulated in this program, whose stalls do not keep it stopped."""
 
 
 class StallTolerantLinkedRobot(StallTolerant, LinkedRobot):

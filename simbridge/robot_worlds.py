@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RobotWorlds:
-    """Worlds of a robot's simulations: checks, plans and drawings, for factories of simulations to inherit."""
+    """Base of factories of simulations: it checks, plans and draws the worlds of one robot."""
 
     settings: RobotSettings
 

@@ -68,7 +68,7 @@ class SimConsole:
 
 
 class TypedLines:
-    """Typed lines, read by a thread of their own."""
+    """Lines typed at the console of `kurt2rt sim`, read by a thread so that the simulation never waits."""
 
     def __init__(self, lines: TextIO) -> None:
         self._lines = lines
@@ -93,7 +93,7 @@ class TypedLines:
 
 
 class News:
-    """Events of the robot since the last call, as lines."""
+    """Reporter of changes of the simulated robot, such as collisions or a lost link, for `kurt2rt sim`."""
 
     def __init__(self, standalone: StandaloneRobot) -> None:
         self._standalone = standalone
@@ -118,7 +118,7 @@ class News:
 
 
 class StatusLine:
-    """Status line of the robot."""
+    """Line on the simulated robot's time, place, speeds and frames for the console of `kurt2rt sim`."""
 
     def __init__(self, standalone: StandaloneRobot) -> None:
         self._standalone = standalone

@@ -10,7 +10,7 @@ from hal.bus import CONTROL_ID, open_bus
 
 
 class SimulatedLink(Protocol):
-    """Both ends of a link, and the course of a simulated cycle on it."""
+    """Link between a simulated robot and its driver, which decides what a simulated cycle does on it."""
 
     def cycle(self, step_robot: Callable[[], None]) -> None:
         """Simulate one cycle up to the runtime's tick; `step_robot` is called once within it."""
@@ -26,7 +26,7 @@ class SimulatedLink(Protocol):
 
 
 class InstantLink:
-    """Link without a time of its own (SimulatedLink)."""
+    """Base of links in memory, over which reports arrive in the cycle that made them (SimulatedLink)."""
 
     def cycle(self, step_robot: Callable[[], None]) -> None:
         """Step the robot; its reports arrive at once."""
@@ -45,7 +45,7 @@ _KERNEL_DELIVERY_S = 0.001
 
 
 class CanLine(InstantLink):
-    """Both ends of a bus that takes no simulated time."""
+    """Both ends of a CAN bus between a simulated KURT2 and its driver; frames take no simulated time."""
 
     def __init__(self, bus: str | None = None) -> None:
         """Open both ends of a bus (hal.bus.open_bus) that others may listen to; None: of a channel of their own.

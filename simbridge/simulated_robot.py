@@ -28,7 +28,7 @@ MakeController = Callable[[Body, Wheels], Controller]
 
 
 class RangeSensors(Protocol):
-    """Newest readings of all range sensors, in the order of the sensor table."""
+    """Simulated range sensors of a robot, in the order of the sensor table."""
 
     @property
     def counts(self) -> Sequence[int]:
@@ -54,7 +54,7 @@ MakeSensors = Callable[[RobotSettings, World, Noise, Noise], RangeSensors]
 
 
 def infrared_sensors(robot: RobotSettings, world: World, noise: Noise, build: Noise) -> InfraredSensors:
-    """Return the infra-red sensors of a robot's table.
+    """Return the simulated infra-red sensors of a robot, the default of robots without sensors of their own.
 
     `noise` selects phases and readings, `build` gains and periods.
     """
@@ -246,6 +246,9 @@ class SimulatedRobot:
 
 
 def hash_state(numbers: Sequence[float], counters: Sequence[int]) -> str:
-    """Return the SHA-256 over the state of a robot, its numbers in m, rad and s, and its counters."""
+    """Return the SHA-256 of a simulated robot's state, by which two engines or runs are compared.
+
+    `numbers`: in m, rad and s. `counters`: whole numbers.
+    """
     layout = f"<{len(numbers)}d{len(counters)}q"
     return hashlib.sha256(struct.pack(layout, *numbers, *counters)).hexdigest()

@@ -28,7 +28,7 @@ def plan_of(world: WorldSettings, version: int = 0) -> WorldPlan:
 
 
 class RealtimeWorld:
-    """World of a running simulation; changes are made by the simulation's thread."""
+    """World of a running simulation that a teacher can change; the simulation's thread makes the changes."""
 
     def __init__(
         self, robot: SimulatedRobot, world: WorldSettings, geometry: GeometrySettings, simulation: RealtimeSimulation

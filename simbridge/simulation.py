@@ -18,7 +18,10 @@ from simbridge.worlds.world_loading import load_world
 
 @dataclass(frozen=True, slots=True)
 class Kurt2SimulationFactory(RobotWorlds):
-    """Opens simulations of KURT2 (simbridge.contracts.simulation.SimulationFactory); can be sent to another process."""
+    """Opener of simulations and batches of KURT2; can be sent to another process.
+
+    It is a simbridge.contracts.simulation.SimulationFactory.
+    """
 
     settings: Kurt2Settings
     bus: str | None = None

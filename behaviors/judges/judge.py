@@ -40,7 +40,7 @@ class AppraisalFeatures(NamedTuple):
 
 
 def mirrored(features: AppraisalFeatures) -> AppraisalFeatures:
-    """Return the features of the same drive seen in a mirror, which swaps left and right."""
+    """Return the features of the same drive in a mirror, for judges that know a wall on the left only."""
     return features._replace(
         left_m=features.right_m,
         right_m=features.left_m,

@@ -53,7 +53,7 @@ MEASURE_EVERY = 10
 
 
 class Mean:
-    """Arithmetic mean of all added values."""
+    """Arithmetic mean of the values that a metric adds during a drive, such as distance errors in m."""
 
     def __init__(self) -> None:
         self._sum = 0.0

@@ -42,7 +42,7 @@ class EightsSettings(MetricSettings):
 
 
 class Eights:
-    """Counts half an eight for each round about the one post that follows a round about the other.
+    """Metric of eights: half an eight for each round about one post that follows a round about the other.
 
     A round is what the robot does between coming to a post's side of the floor and leaving it; it must be whole, in the
     wanted direction. Further rounds about the same post count for nothing.

@@ -46,7 +46,7 @@ class ErrandsSettings(MetricSettings):
 
 
 class Errands:
-    """Tracker of the robot from street to street."""
+    """Count of junctions driven through, and the trail of streets that tours and goal exams read."""
 
     unit = "junctions"
     needs_reset = False

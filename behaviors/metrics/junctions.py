@@ -49,11 +49,11 @@ class JunctionsSettings(MetricSettings):
 
 
 class Junctions:
-    """Asks at random for what is possible at the next junction, and counts how often it is done.
+    """Metric of junctions: it asks at random for what is possible at the next one, and counts what is done.
 
-    The next command comes as soon as the robot has left a junction behind. What was asked for at a junction that the
-    robot did not get to, or not out of, was not done: who turns back, or ends early, does it wrong. A robot that can do
-    none of its behaviours at the junction that it comes to is needs_reset.
+    The next command comes as soon as the robot has left a junction. A junction counts as wrong if the robot did not get
+    to it, or not out of it. So do a turn back and an early end. If none of its behaviours is possible at the junction
+    ahead, `needs_reset` is set.
     """
 
     unit = "junctions"

@@ -43,7 +43,7 @@ class LapsSettings(MetricSettings):
 
 
 class Laps:
-    """Counts laps, and how far from the wanted distance the robot is on the mean."""
+    """Metric of laps along walls, and of the mean difference from the wanted distance to the wall, in m."""
 
     unit = "laps"
     needs_reset = False

@@ -43,7 +43,10 @@ class RoundsSettings(MetricSettings):
 
 
 class Rounds:
-    """Counts rounds near the post, back turns against, and how far from the wanted distance they lead on the mean."""
+    """Metric of rounds about a post, back turns against, and of the mean difference from the wanted distance.
+
+    Only the way near the post counts as progress.
+    """
 
     unit = "rounds"
     needs_reset = False

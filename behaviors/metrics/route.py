@@ -29,7 +29,7 @@ _LEFT_BEHIND_M = 0.1
 
 
 class RouteSettings(MetricSettings):
-    """Settings of the metric `route`."""
+    """Settings of the metric `route`: junctions passed in the required way along one closed loop."""
 
     decisions: Annotated[int, Field(ge=4, le=64)] = 8
     """Junctions of the loop; at each of them one way on is right."""
@@ -60,7 +60,7 @@ class RouteSettings(MetricSettings):
 
 @dataclass(frozen=True, slots=True)
 class Passage:
-    """Passage of the robot through one junction of the route."""
+    """Judgement on the robot at one junction of the route: the turn that was right, and the one it made."""
 
     leg: int
     """Index of the leg that the robot came by, from 0."""
@@ -74,11 +74,11 @@ class Passage:
 
 
 class FixedRoute:
-    """Counts what is right at the junctions of the route.
+    """Metric of a route: it counts the junctions at which the robot turned as the route does.
 
-    A robot that left it counts as wrong, is needs_reset, and is to be set down on the street that it should have taken:
-    what comes next is judged as if nothing had been. One that is stuck on its way to a junction is to try that once
-    more, one that is stuck within it is to go on behind it.
+    A robot that left the route has a wrong junction and `needs_reset`. It is set down on the street that it should have
+    driven into, and judged from there. If it is stuck on its way to a junction, it tries that junction again. If it is
+    stuck within a junction, it goes on after it.
     """
 
     unit = "junctions"

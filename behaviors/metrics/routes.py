@@ -16,7 +16,7 @@ _Step = tuple[Side, Junction]
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """A street of the route, and what is to be done at its end."""
+    """Street of a route as it is driven, with the junction at its end and the way out of it."""
 
     way: Side
     """The way along the street."""
@@ -41,7 +41,7 @@ class Leg:
 
 @dataclass(frozen=True, slots=True)
 class Route:
-    """A loop: the last leg ends where the first begins."""
+    """Closed way through streets, leg by leg: the last leg ends where the first begins."""
 
     legs: tuple[Leg, ...]
 

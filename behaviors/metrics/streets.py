@@ -84,7 +84,7 @@ class Junction:
 
 @dataclass(frozen=True, slots=True)
 class Lane:
-    """The middle line of a street."""
+    """Middle line of a straight street across all its junctions; a robot's deviation is measured from it."""
 
     level: bool
     """True if the street runs from east to west, False from north to south."""
@@ -97,7 +97,7 @@ class Lane:
 
 
 class StreetMap:
-    """All streets and junctions of a world."""
+    """Streets and junctions of a world; it finds those at a pose, for the metrics of junctions and routes."""
 
     def __init__(self, plan: WorldPlan) -> None:
         self.lanes = tuple(_lane(each.from_m, each.to_m, each.width_m) for each in plan.streets)

@@ -12,7 +12,7 @@ from simbridge.contracts.simulation import Pose
 
 @dataclass(frozen=True, slots=True)
 class Street:
-    """A street between two junctions, in one direction."""
+    """Stretch of street from the junction `behind` to the junction `ahead`, driven in the direction `way`."""
 
     way: Side
     behind: Junction
@@ -31,7 +31,7 @@ class Street:
 
 
 class Town:
-    """Directed streets of a world, and the shortest ways between them."""
+    """Streets of a world in both directions, and the shortest ways between them by the robot's behaviours."""
 
     def __init__(self, streets: StreetMap, meaning: Mapping[str, int]) -> None:
         """`meaning`: quarter turns to the left of each behaviour."""

@@ -23,7 +23,7 @@ class CircleSettings(PolicySettings):
 
 
 class Thresholds(NamedTuple):
-    """Numbers of the policy, by the names of its settings."""
+    """Thresholds of `CircleSettings` in m as plain numbers, for `choose_action`; a batch compiles both."""
 
     near_m: float
     far_m: float
@@ -38,7 +38,10 @@ _SPIN_LEFT, _FORWARD, _BEAR_LEFT, _CURVE_LEFT = range(4)
 
 
 def choose_action(left: Side, want: Thresholds) -> int:
-    """Return the index in ACTIONS of the right action."""
+    """Return the index in ACTIONS of the action that circles round a post on the left; a batch compiles it.
+
+    `left`: distances in m of the sensors on the left, from front to back.
+    """
     nearest_m = min(left)
     if nearest_m >= want.lost_m:
         return _SPIN_LEFT
@@ -49,7 +52,7 @@ def choose_action(left: Side, want: Thresholds) -> int:
 
 
 class Circle:
-    """Curve left round an object on the left, less while it is ahead of abeam; else spin left until it is there.
+    """Policy that circles round a post on the left: curve left, less while it is ahead of abeam, else spin left.
 
     Not for places with walls in range: the robot would follow a wall, and the policy ignores the front sensors.
     """

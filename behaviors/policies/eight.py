@@ -37,7 +37,7 @@ class EightSettings(PolicySettings):
 
 
 class Thresholds(NamedTuple):
-    """Numbers of the policy, by the names of its settings."""
+    """Thresholds of `EightSettings` in m as plain numbers, for `choose_action`; a batch compiles both."""
 
     near_m: float
     far_m: float
@@ -63,7 +63,7 @@ _LEFT, _RIGHT = 0, 1
 
 
 class Column(NamedTuple):
-    """View of a column by the sensors of one side."""
+    """Column as the sensors of one side see it: its place along the robot, and distances in m."""
 
     place: int
     beside_m: float
@@ -71,7 +71,10 @@ class Column(NamedTuple):
 
 
 def view_column(side: Side, want: Thresholds) -> Column:
-    """Return the view of a column by the sensors of one side."""
+    """Return how the sensors of one side see a column: ahead, next to one of them, at the rear, or nowhere.
+
+    `side`: distances in m of the front edge sensor, the four at the side and the rear edge sensor.
+    """
     beside_m = min(side[1], side[2], side[3], side[4])
     if beside_m < want.lost_m:
         place = _FOREMOST
@@ -85,7 +88,10 @@ def view_column(side: Side, want: Thresholds) -> Column:
 
 
 def choose_action(front_m: float, left: Column, right: Column, want: Thresholds) -> int:
-    """Return the index in ACTIONS of the right action; `front_m`: least distance of the sensors in front."""
+    """Return the index in ACTIONS of the action that drives an eight; `front_m`: least distance in front.
+
+    A batch compiles this function, too. `left`, `right`: views of the column on each side.
+    """
     if front_m < want.front_m:
         to_left_m, to_right_m = min(left.beside_m, left.edge_m), min(right.beside_m, right.edge_m)
         return _SPIN + (_RIGHT if to_left_m <= to_right_m else _LEFT)
@@ -111,7 +117,7 @@ def choose_action(front_m: float, left: Column, right: Column, want: Thresholds)
 
 
 class Eight:
-    """Curve round the column that lies farther ahead, straight on from one column to the other.
+    """Policy that drives an eight: round the column that lies farther ahead, and straight on to the other.
 
     No memory is needed: the robot leaves a column once the other one comes into view, and then has its back to it.
     """

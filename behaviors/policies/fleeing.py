@@ -23,7 +23,7 @@ class FleeingSettings(PolicySettings):
 
 
 class Thresholds(NamedTuple):
-    """Numbers of the policy, by the names of its settings."""
+    """Thresholds of `FleeingSettings` in m as plain numbers, for `choose_action`; a batch compiles both."""
 
     front_m: float
     edge_m: float
@@ -35,7 +35,7 @@ _FLEE, _WHIRL_LEFT, _CURVE_LEFT, _CURVE_RIGHT = range(4)
 
 
 def choose_action(front_m: float, left_m: float, right_m: float, want: Thresholds) -> int:
-    """Return the index in ACTIONS of the right action.
+    """Return the index in ACTIONS of the action that flees from near walls; a batch compiles this function.
 
     `front_m`: least distance of the sensors in front; `left_m`, `right_m`: of those at the front edges.
     """
@@ -48,7 +48,10 @@ def choose_action(front_m: float, left_m: float, right_m: float, want: Threshold
 
 
 class Fleeing:
-    """Spin left from near obstacles: neighbouring RLAs that spin to either side would oscillate for ever."""
+    """Policy that drives away from walls, and spins left from near obstacles.
+
+    It always spins to one side, because neighbouring RLAs that spin to either side would oscillate for ever.
+    """
 
     actions = ACTIONS
 

@@ -27,9 +27,10 @@ class SectorCircleSettings(PolicySettings):
 
 
 class SectorCircle(SectorPolicy[SectorCircleSettings]):
-    """Turn sharply left until the post appears ahead, then pass it; a post that is abeam need not be seen.
+    """Policy that circles round a post: a sharp curve left until the post appears ahead, then past it.
 
-    The curve has to be narrower than the circle, so that it leads back to the post.
+    A post that is abeam need not be seen. The curve has to be narrower than the circle, so that it leads back to the
+    post.
     """
 
     blocked = "spin_right"

@@ -27,7 +27,7 @@ class SectorFleeingSettings(PolicySettings):
 
 
 class SectorFleeing(SectorPolicy[SectorFleeingSettings]):
-    """Spin left from near obstacles, curve away from the others: the policy `fleeing` over sectors."""
+    """Policy `fleeing` over sectors: spin left from near obstacles, curve away from the others."""
 
     blocked = "whirl_left"
 

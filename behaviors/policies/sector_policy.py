@@ -8,7 +8,7 @@ from hal.robot_settings import InfraredSettings
 
 
 class FrontAndLeft(Protocol):
-    """Settings that every policy over sectors has."""
+    """Settings that every policy over sectors has: two sectors, and the distance ahead at which it turns."""
 
     front: Sector
     left: Sector

@@ -12,7 +12,7 @@ from simbridge.contracts.simulation import WallSide
 
 
 class SectorWallFollowingSettings(PolicySettings):
-    """Sectors and thresholds of a wall on the left."""
+    """Sectors and thresholds of wall following, named for a wall on the left; `side` mirrors them."""
 
     chooses_among = ("spin_right", "curve_left", "curve_right", "bear_left", "bear_right", "forward")
 
@@ -42,7 +42,10 @@ class SectorWallFollowingSettings(PolicySettings):
 
 
 class SectorWallFollowing(SectorPolicy[SectorWallFollowingSettings]):
-    """Spin right at an obstacle ahead, curve left where the wall ends, else hold the distance ahead to the left."""
+    """Policy that follows a wall: spin right at an obstacle ahead, curve left where the wall ends.
+
+    Else it holds the distance ahead to the left. Left and right are exchanged for a wall on the right.
+    """
 
     blocked = "spin_right"
 

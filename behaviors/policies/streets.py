@@ -43,7 +43,10 @@ STRAIGHT_ON = -1
 
 
 class StreetsSettings(PolicySettings):
-    """Thresholds; distances from the sensors' faces unless said otherwise."""
+    """Thresholds of the policy that drives along streets and turns at junctions.
+
+    Distances are measured from the sensors' faces unless said otherwise.
+    """
 
     behaviours: ClassVar[tuple[str, ...] | None] = ("straight_on", "turn_left", "turn_right")
     half_width_m: Annotated[float, Field(ge=0.2, le=0.8)]
@@ -72,7 +75,7 @@ class StreetsSettings(PolicySettings):
 
 
 class Thresholds(NamedTuple):
-    """Numbers of the policy for one robot, by the names of its settings where they have one."""
+    """Thresholds of `StreetsSettings` for one robot as plain numbers, which a batch compiles, too."""
 
     half_width_m: float
     look_m: float
@@ -118,7 +121,7 @@ def wall_away_m(side: Side, rays: Rays, turn: int, want: Thresholds) -> float:
 
 
 def turn_at_once(front: Front, left: Side, right: Side, turn: int, want: Thresholds) -> int:
-    """Return the index in ACTIONS of an action that leaves the middle of the street; KEEPS_MIDDLE without one.
+    """Return the index in ACTIONS of the action that turns or avoids a wall; KEEPS_MIDDLE if neither is due.
 
     `turn`: STRAIGHT_ON, or the side of the turn.
     """
@@ -162,7 +165,7 @@ def turn_of(behaviour: str) -> int:
 
 
 class Streets:
-    """Keep to the middle between both walls or off the only one; turn round the corner of an open side.
+    """Policy that keeps to the middle between both walls or off the only one, and turns round open corners.
 
     On the way straight through a crossing the edge sensors' view of the corners decides. All side sensors look into
     the open there, and a robot that enters askew would run into the far corner. With `askew_m` and `straight_m` it

@@ -42,7 +42,7 @@ class WallFollowingSettings(PolicySettings):
 
 
 class Thresholds(NamedTuple):
-    """Thresholds of the policy for one robot, in m; the names are those of its settings."""
+    """Thresholds of `WallFollowingSettings` for one robot in m, as plain numbers that a batch compiles."""
 
     wanted_m: float
     tolerance_m: float
@@ -66,7 +66,10 @@ _FORWARD, _SPIN_RIGHT, _SPIN_LEFT, _CURVE_LEFT, _CURVE_RIGHT, _BEAR_LEFT, _BEAR_
 
 
 def choose_action(front_m: float, left_edge_m: float, right_edge_m: float, left: Side, want: Thresholds) -> int:
-    """Return the index in ACTIONS of the right action; `front_m`: least distance of the sensors in front."""
+    """Return the index in ACTIONS of the action that follows a wall on the left; a batch compiles it.
+
+    `front_m`: least distance of the sensors in front; `left`: distances of those on the left, from front to back.
+    """
     nearest_m = min(left)
     if front_m < want.front_m or left_edge_m < want.edge_m or nearest_m <= want.near_m:
         return _SPIN_RIGHT
@@ -89,7 +92,10 @@ def choose_action(front_m: float, left_edge_m: float, right_edge_m: float, left:
 
 
 class WallFollowing:
-    """Spin right at an obstacle ahead, curve left at the end of the wall, else hold distance and heading."""
+    """Policy that follows a wall on the left: spin right at an obstacle ahead, curve left where the wall ends.
+
+    Else it holds distance and heading to the wall.
+    """
 
     actions = ACTIONS
 

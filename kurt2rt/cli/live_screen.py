@@ -15,7 +15,10 @@ _WRONG = "yellow"
 
 
 class LiveScreen:
-    """Last lines of a terminal, rewritten in place. Each call may block: call it from the printer's thread only."""
+    """Lines at the bottom of the terminal of `kurt2rt run`, rewritten in place: addresses and status.
+
+    Each call may block: call it from the printer's thread only.
+    """
 
     def __init__(self, console: Console, *, for_phones: bool) -> None:
         """Write to a console; `for_phones`: show how to pair a device while none is paired."""

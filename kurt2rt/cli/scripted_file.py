@@ -15,7 +15,10 @@ _SUFFIX = ".auto"
 
 
 def own_file(knowledge: Path) -> Path:
-    """Return the path of the scripted teacher's own knowledge file, next to the file of the settings."""
+    """Return the path of the file that a scripted teacher teaches into, next to the knowledge of people.
+
+    `knowledge`: file of the settings, in which people teach.
+    """
     return knowledge.with_name(f"{knowledge.stem}{_SUFFIX}{knowledge.suffix}")
 
 

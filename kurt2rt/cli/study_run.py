@@ -96,7 +96,7 @@ def open_executor(cluster: Path | None, jobs: int) -> Iterator[Executor]:
 
 @dataclass(frozen=True, slots=True)
 class RunningStudy:
-    """Folder of a study, which is held, and the executor of its jobs."""
+    """Study whose jobs are done, as its results are told: further jobs can be run in the same folder."""
 
     bar: OneBar
     executor: Executor

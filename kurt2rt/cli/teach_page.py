@@ -30,7 +30,7 @@ ROBOT_HERE = "127.0.0.1"
 
 @dataclass(frozen=True, slots=True)
 class PageOptions:
-    """Options of `kurt2rt teach` for serving pages."""
+    """Options of `kurt2rt teach` that tell on which ports and addresses pages are served."""
 
     port: int
     """TCP port; 0: any."""

@@ -34,7 +34,10 @@ _REMOTE = ("SSH_CONNECTION", "SSH_TTY")
 
 
 class TerminalScreen:
-    """Screen of the robot program (kurt2rt.service.program_screen.ProgramScreen)."""
+    """Output of `kurt2rt run` on a terminal, a pipe or systemd's journal.
+
+    It is a kurt2rt.service.program_screen.ProgramScreen.
+    """
 
     def __init__(
         self, console: Console, devices: Path, *, as_service: bool = False, phones: bool = False, browser: bool = False

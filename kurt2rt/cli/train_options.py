@@ -30,7 +30,7 @@ FOLDER, ROUTES, ERRANDS = Path("results/train"), Path("results/route"), Path("re
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrainOptions(EngineOptions):
-    """Options of `kurt2rt train`."""
+    """Options of `kurt2rt train` as given on the command line."""
 
     task: Annotated[str | None, task_option(f"Default: the task of the file in --knowledge, else {DEFAULT_TASK}.")] = (
         None
@@ -80,7 +80,7 @@ class TrainOptions(EngineOptions):
 
 @dataclass(frozen=True, slots=True)
 class TrainSetup:
-    """Simulation, robot and task of a training."""
+    """Simulation, robot and task of one call of `kurt2rt train`, made from its options."""
 
     factory: SimulationFactory
     robot: RobotSettings

@@ -19,7 +19,7 @@ _FIRST_TICK_S = 0.1
 
 
 class LiveQuestion(NamedTuple):
-    """Explanation of a running robot's newest decision."""
+    """Facts of a running robot's newest decision, with the readings that would have changed it."""
 
     facts: DecisionFacts
     counterfactuals: tuple[SensorCounterfactual, ...]

@@ -25,7 +25,7 @@ class EventStore(Protocol):
 
 @dataclass(slots=True)
 class InMemoryEventStore:
-    """List of events in submission order (EventStore)."""
+    """Event store that keeps lessons in a list and not in a file, for simulated training (EventStore)."""
 
     events: list[TeachingEvent] = field(default_factory=list)
     saving_error: str | None = None

@@ -33,5 +33,5 @@ class LessonSpeed:
         return WheelSpeeds(share * wheel_speeds.left_m_s, share * wheel_speeds.right_m_s)
 
     def end(self) -> None:
-        """End the slow lesson's tick: it is at full speed, or at standstill."""
+        """Note a tick that is not slowed: the wheels are at full speed or stand, and the tick counts."""
         self.slows, self.counts = False, True

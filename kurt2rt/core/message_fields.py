@@ -32,7 +32,7 @@ class Bytes:
 
 @dataclass(frozen=True, slots=True)
 class BytesUpTo:
-    """One byte to `most` bytes."""
+    """Check of a byte string of 1 to `most` bytes."""
 
     most: int
 
@@ -44,7 +44,7 @@ class BytesUpTo:
 
 @dataclass(frozen=True, slots=True)
 class Int:
-    """Whole number; a bool is none."""
+    """Check of a whole number from `least` to `most`; a bool is none."""
 
     least: int
     most: int
@@ -57,7 +57,10 @@ class Int:
 
 @dataclass(frozen=True, slots=True)
 class Float:
-    """Number from -`most` to `most`, in `unit`. Integers count, because some encoders shorten 1.0 to 1."""
+    """Check of a number from -`most` to `most`, in `unit`; integers count.
+
+    Some encoders shorten 1.0 to 1.
+    """
 
     most: float
     unit: str = ""
@@ -98,7 +101,7 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class OneOf:
-    """One of a few words or whole numbers, converted by `kind`."""
+    """Check of a whole number that has to be one of `numbers`; returns it converted by `kind`."""
 
     values: tuple[str | int, ...]
     kind: Callable[[Any], Any] | None = None
@@ -140,7 +143,7 @@ class UpTo:
 
 @dataclass(frozen=True, slots=True)
 class OrNotFinite:
-    """Number that is not finite, which is null on the wire."""
+    """Check of a number that is sent as null if it is not finite; null is read as `stands_for`."""
 
     stands_for: float
     """Value of null."""

@@ -14,7 +14,7 @@ Field = str | int | tuple[str, ...] | None
 
 
 class ResultCode(TextCode):
-    """Code of an accepted command: the effect."""
+    """Code of the effect of an accepted command, with its text; its fields are in the `Outcome`."""
 
     REPEATED = ("repeated", "received before; counted once")
     """A command of this id was applied before; it counts once."""
@@ -81,7 +81,7 @@ class ResultCode(TextCode):
 
 
 class RefusalCode(TextCode):
-    """Code of a refused command or file: the reason."""
+    """Code for why a command or file was refused, with the text that tells the teacher what to do."""
 
     # Control authority.
     ANOTHER_TEACHES = ("another teaches", "{teacher} teaches now; ask to be handed over to, or {take}")
@@ -217,7 +217,10 @@ _CODES: dict[str, Code] = {each.value: each for each in (*ResultCode, *RefusalCo
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Code with its fields; the field `says` holds text of another program, or a file name."""
+    """Outcome of a command as a code and the fields of its text; each surface words it (`text_of`).
+
+    The field `says` holds text of another program, or a file name.
+    """
 
     code: Code
     fields: Mapping[str, Field] = field(default_factory=dict)

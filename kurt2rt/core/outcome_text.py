@@ -11,7 +11,7 @@ from kurt2rt.core.rla.rla import BASIC, rla_title
 
 
 class Surface(StrEnum):
-    """Surface on which a teacher reads the text."""
+    """Surface on which a teacher reads an outcome; texts name what to press or type there."""
 
     PAGE = "page"
     TERMINAL = "terminal"
@@ -51,7 +51,7 @@ _MADE_OF = {"title": ("rla",), "wanted": ("behaviour",), "sought": ("goal", "sta
 
 
 def fields_of(code: Code) -> frozenset[str]:
-    """Return the names of the fields in the text of a code."""
+    """Return the names of the fields that an outcome of a code needs, so that its text can be made."""
     named = code.fields - _WORDS[Surface.LOG].keys()
     return frozenset(each for name in named for each in _MADE_OF.get(name, (name,)))
 

@@ -19,7 +19,7 @@ Share = Annotated[float, Field(gt=0, le=1)]
 
 
 class SignalsSettings(Settings):
-    """Timing of the scripted teacher's rewards."""
+    """Timing of a scripted teacher's rewards in phase 3: shortest times between two of a value."""
 
     bad_every_s: Annotated[float, Field(gt=0, le=1000)] = 1.0
     good_every_s: Annotated[float, Field(gt=0, le=1000)] = 2.0
@@ -30,7 +30,7 @@ class SignalsSettings(Settings):
 
 
 class AppraisalsSettings(Settings):
-    """Timing of the scripted teacher's appraisals."""
+    """Timing of the appraisals by which a scripted teacher teaches the critic in phase 4."""
 
     bad_every_s: Annotated[float, Field(gt=0, le=1000)] = 1.0
     good_every_s: Annotated[float, Field(gt=0, le=1000)] = 1.0
@@ -40,14 +40,14 @@ class AppraisalsSettings(Settings):
 
 
 class AskedShare(Settings):
-    """Target: fraction of the robots that succeed in a world."""
+    """Target of the phases study in one world: fraction of the robots that have to succeed."""
 
     world: str
     share: Share
 
 
 class AskedOfPhases(Settings):
-    """Targets of the study; an absent one is not checked."""
+    """Targets of the phases study, written down before its runs; an absent one is not checked."""
 
     repaired_by_rewards: tuple[AskedShare, ...] = ()
     """Success of the corrupted sets after phase 3."""

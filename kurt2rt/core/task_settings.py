@@ -45,7 +45,7 @@ def _each_once(names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 class FeatureWeight(Settings):
-    """Weight of some features in every distance, for their recent and averaged values."""
+    """Weight of some features in every distance, recent and averaged; features not named have 1."""
 
     weight: Annotated[float, Field(ge=0, le=10)]
     features: Annotated[tuple[str, ...], Field(min_length=1)]
@@ -53,7 +53,7 @@ class FeatureWeight(Settings):
 
 
 class LearningSettings(Settings):
-    """Settings of the match and of corrections."""
+    """Settings by which the basic level matches situations to RLAs, asks, and places corrections."""
 
     radius: Annotated[float, Field(gt=0, le=100_000)]
     """Confidence radius R, in the units of the situation (counts)."""
@@ -101,7 +101,7 @@ class PaperDefaults(LearningSettings):
 
 
 class TeacherSettings(Settings):
-    """Settings of the scripted teacher."""
+    """Speed and errors of the scripted teacher of a task, without the limits of a person."""
 
     reaction_s: Seconds
     """Time between the robot's question and the answer."""
@@ -142,7 +142,7 @@ class TeachingSettings(Settings):
 
 
 class SuccessSettings(Settings):
-    """Conditions of success, in addition to not getting stuck and no guard stop."""
+    """Conditions for passing an exam, besides not getting stuck and no guard stop."""
 
     collisions_at_most: Annotated[int, Field(ge=0, le=1000)] = 0
     progress_share: Share = 0.8
@@ -152,7 +152,7 @@ class SuccessSettings(Settings):
 
 
 class ExamSettings(Settings):
-    """Settings of an exam, which has no teacher."""
+    """Worlds, duration and criteria of a task's exam, in which no teacher helps the robot."""
 
     worlds: Annotated[tuple[str, ...], Field(min_length=1)]
     start: Place = "starts"
@@ -165,7 +165,7 @@ class ExamSettings(Settings):
 
 
 class PaperResult(Settings):
-    """Results of the paper for this task (section VII)."""
+    """Numbers that the paper reports for this task (section VII), for comparison in tables."""
 
     rlas: int = 0
     """0 if the paper has no such task."""
@@ -329,13 +329,16 @@ def taught_by_named(task: TaskSettings, name_or_path: str) -> TaskSettings:
 
 
 def taught_by(task: TaskSettings, profile: TeacherProfile) -> TaskSettings:
-    """Return a copy of the task that this scripted teacher teaches; the robot asks and drives as the teacher wants."""
+    """Return a copy of the task with this scripted teacher, and with its wishes (`as_its_teacher_wants`)."""
     teaching = task.teaching.model_copy(update={"profile": profile})
     return as_its_teacher_wants(task.model_copy(update={"teaching": teaching}))
 
 
 def as_its_teacher_wants(task: TaskSettings) -> TaskSettings:
-    """Return a copy of the task in which the robot asks, and drives its lessons, as its scripted teacher wants."""
+    """Return a copy of the task that asks and drives lessons as its scripted teacher wants.
+
+    A profile may set the fraction of R beyond which the robot asks, and the speed of lessons.
+    """
     profile, learning, teaching = task.teaching.profile, task.learning, task.teaching
     if profile.ask_radius_fraction is not None:
         learning = learning.model_copy(update={"ask_radius_fraction": profile.ask_radius_fraction})

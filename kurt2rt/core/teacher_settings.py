@@ -21,7 +21,7 @@ Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class LogNormalDelay(Settings):
-    """Log-normal distribution of a delay."""
+    """Random delay of a scripted teacher, in s: log-normal, cut off at `longest_s`."""
 
     kind: Literal["log_normal"]
     median_s: Seconds
@@ -36,7 +36,7 @@ class LogNormalDelay(Settings):
 
 
 class GammaDelay(Settings):
-    """Gamma distribution of a delay, after a shortest time."""
+    """Random delay of a scripted teacher, in s: `shortest_s` and a gamma-distributed rest."""
 
     kind: Literal["gamma"]
     shortest_s: Seconds
@@ -55,7 +55,7 @@ Delay = Annotated[LogNormalDelay | GammaDelay, Field(discriminator="kind")]
 
 
 class LinkSettings(Settings):
-    """Delays of screen and network between robot and teacher."""
+    """Rate and age of the states that a scripted teacher sees, and delay of its commands."""
 
     pictures_per_s: Annotated[float, Field(gt=0, le=100)]
     """Rate of the states that the teacher sees."""
@@ -82,14 +82,14 @@ class LookBackSettings(Settings):
 
 
 class LapseSettings(Settings):
-    """Times in which the teacher looks away."""
+    """Rate and duration of the lapses in which a scripted teacher does not look at the robot."""
 
     per_minute: Annotated[float, Field(ge=0, le=60)]
     duration: Delay
 
 
 class ErrorSettings(Settings):
-    """Fractions of commands that name another action than the right one."""
+    """Fractions, 0 to 1, of a scripted teacher's commands that name another action than the right one."""
 
     answers: Share
     corrections: Share
@@ -98,7 +98,7 @@ class ErrorSettings(Settings):
 
 
 class PersonSettings(Settings):
-    """Limits of a person who teaches. Each delay is drawn for each event."""
+    """Limits of a scripted teacher that acts like a person; each delay is drawn for each event."""
 
     question_delay: Delay
     """Time from a question that is seen to the press that answers it."""

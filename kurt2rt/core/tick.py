@@ -27,7 +27,7 @@ from kurt2rt.platform.ledger import Stage
 
 @dataclass(slots=True)
 class Perceived:
-    """Result of the step perceive."""
+    """Result of the tick's step perceive: the situation, and the critic's view of it."""
 
     situation: Situation
     blind: bool
@@ -37,7 +37,7 @@ class Perceived:
 
 @dataclass(slots=True)
 class Decided:
-    """Result of the step decide."""
+    """Result of the tick's step decide: the teachers' commands with their results, and the decision."""
 
     commands: tuple[Input, ...]
     results: list[CommandResult]
@@ -50,7 +50,7 @@ class Decided:
 
 @dataclass(slots=True)
 class Guarded:
-    """Result of the step guard."""
+    """Result of the tick's step guard: the applied speeds, and whether the robot asks at a bumper."""
 
     result: GuardResult
     drove_at_s: float

@@ -18,7 +18,7 @@ from kurt2rt.platform.ledger import TickTimer
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TickParts:
-    """Parts that a tick calls; `kurt2rt.runtime` builds them."""
+    """Parts that a `Tick` calls, in any order; `kurt2rt.runtime` builds them, None for what a task lacks."""
 
     robot: Robot
     perception: Perception

@@ -17,7 +17,7 @@ from kurt2rt.core.teaching.inbox import Input
 
 
 class TickRecord(NamedTuple):
-    """Inputs, decision and results of one tick."""
+    """Inputs, decision and results of one tick, as channel, recorder and scripted teachers read them."""
 
     tick: int
     now_s: float

@@ -36,7 +36,10 @@ _MOST_ROBOT_S = 60_000.0
 
 
 class Run(NamedTuple):
-    """One drive without a teacher, repeated by `kurt2rt exam --seed NUMBER --world WORLD`."""
+    """Drive of a certificate: its number is its seed, and its world is drawn from the places.
+
+    It is repeated by `kurt2rt exam --seed NUMBER --world WORLD`.
+    """
 
     number: int
     """Seed of the robot, its noise, its start and the choice of the world."""
@@ -52,7 +55,7 @@ class Run(NamedTuple):
 
 
 class Extent(NamedTuple):
-    """Number and worlds of the runs."""
+    """Runs of a certificate: numbers, worlds to draw from, engine, and share of broken sensors."""
 
     first: int
     """Number of the first run."""
@@ -76,7 +79,7 @@ def draw_runs(extent: Extent, sensors: Sequence[str] = ()) -> tuple[Run, ...]:
 
 
 class BlockOutcome(Outcome):
-    """Drives of the runs of one job, in order."""
+    """Stored outcome of a `BlockJob`: the drives of its runs, in their order."""
 
     drives: tuple[DriveRow, ...]
 
@@ -113,7 +116,7 @@ class BlockJob(StudyJob):
 
 
 class Certified(NamedTuple):
-    """Task and knowledge that are certified, and the runs."""
+    """Subject of a certificate: a task, the knowledge file of the robot, and the runs to be driven."""
 
     task: TaskSettings
     knowledge: Path
@@ -213,7 +216,7 @@ class Share(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class PlaceSummary:
-    """Runs in the worlds of one place, as JSON and tables tell them."""
+    """Estimates of a certificate from all runs in the worlds of one place, with their intervals."""
 
     place: str
     runs: int

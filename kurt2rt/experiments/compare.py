@@ -134,7 +134,7 @@ class PupilOutcome(TaughtOutcome):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PupilJob(StudyJob):
-    """Lesson of one robot by presses, and exams after some of them and at the end."""
+    """Job that teaches one robot with one learner, and examines it after some presses and at the end."""
 
     outcome = PupilOutcome
     keeps_knowledge: ClassVar[bool] = False
@@ -187,7 +187,7 @@ class PupilJob(StudyJob):
 
 
 class Compared(NamedTuple):
-    """Tasks that are taught, and when their robots are examined."""
+    """Subject of a comparison of learners: the tasks, and the presses after which robots are examined."""
 
     tasks: tuple[TaskSettings, ...]
     after: tuple[int, ...]

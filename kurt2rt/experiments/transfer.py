@@ -50,7 +50,7 @@ PURPOSE = "new-world"
 
 
 class Transfer(NamedTuple):
-    """Task that is taught at home, the new worlds, and the lessons there."""
+    """Subject of a transfer study: the task of home, and the presses after which robots are examined."""
 
     task: TaskSettings
     places: tuple[str, ...]
@@ -76,7 +76,7 @@ class Transfer(NamedTuple):
 
 
 class HomeOutcome(TaughtOutcome):
-    """Robot that was taught at home."""
+    """Stored outcome of a robot taught and examined in its home world, with the policy's drive there."""
 
     lessons: int
     """Teaching events at home."""
@@ -87,7 +87,7 @@ class HomeOutcome(TaughtOutcome):
 
 
 class TransferOutcome(TaughtOutcome):
-    """Robot that was taught in a new world."""
+    """Stored outcome of a robot that was taught on in a new world after its lesson at home."""
 
     checkpoints: tuple[Checkpoint, ...]
     """Checkpoints in ascending order of presses."""
@@ -117,7 +117,7 @@ class TransferOutcome(TaughtOutcome):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HomeJob(StudyJob):
-    """Lesson at home, and the exam there."""
+    """Job that teaches a robot at home and examines it there; the jobs of new worlds continue from it."""
 
     outcome = HomeOutcome
     gives_lesson: ClassVar[bool] = True
@@ -140,7 +140,10 @@ class HomeJob(StudyJob):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransferJob(StudyJob):
-    """Lesson in a new world, and exams there after some of its presses, and at home. The task is that of home."""
+    """Job that teaches a robot on in a new world, and examines it there after some presses, and at home.
+
+    The task is that of home.
+    """
 
     outcome = TransferOutcome
     gives_exams: ClassVar[bool] = True
@@ -252,7 +255,7 @@ There = Group[str, TransferOutcome]
 
 @dataclass(frozen=True, slots=True)
 class TransferStudy:
-    """Plan and outcomes of the study."""
+    """Stored outcomes of a transfer study, at home and in each new world, with their plan."""
 
     plan: StudyPlan[Transfer]
     home: Group[str, HomeOutcome]

@@ -18,7 +18,10 @@ from simbridge.contracts.simulation import Simulation
 
 
 class CommandedLevel:
-    """Level that drives the commanded action until the next command, and asks before the first one."""
+    """Level of an agent's robot: it drives the commanded action until the next command.
+
+    Before the first one it asks, and so the robot stands.
+    """
 
     def __init__(self, repertoire: Repertoire) -> None:
         self._repertoire = repertoire
@@ -44,7 +47,10 @@ class CommandedLevel:
 
 
 class BusDrive(Episode):
-    """Drive with the starts, the noise and the measures of an exam (kurt2rt.gym.moment.AgentDrive)."""
+    """Drive of an agent over the CAN bus (kurt2rt.gym.moment.AgentDrive).
+
+    Its starts, noise and measures are those of an exam.
+    """
 
     def __init__(self, simulation: Simulation, setup: EpisodeSetup) -> None:
         """Set the robot of a fresh simulation down, and tick once, so that there is an observation.

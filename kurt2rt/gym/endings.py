@@ -7,7 +7,7 @@ from config.settings import SettingsError
 
 
 class Ending(StrEnum):
-    """Reason that an episode is over."""
+    """Reason that an episode is over, as `info` names it."""
 
     COLLISION = "collision"
     """The robot touched a wall or an obstacle."""

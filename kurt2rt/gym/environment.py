@@ -203,7 +203,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
 
 
 class Picture:
-    """Drawing of one world, for the frames of one episode."""
+    """Drawing of one world, onto which `render` draws the robot of an episode frame by frame."""
 
     def __init__(self, factory: SimulationFactory, world: str, robot: RobotSettings) -> None:
         """Draw the walls. Raises config.settings.SettingsError for an unknown world."""
@@ -241,7 +241,7 @@ def observation_space(definition: SituationDefinition, robot: RobotSettings, *, 
 
 
 class ResetOptions(NamedTuple):
-    """World and start of an episode."""
+    """World and start pose of an episode, read from the `options` of `reset`."""
 
     world: str
     start: Pose | None

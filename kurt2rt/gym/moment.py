@@ -12,7 +12,7 @@ from simbridge.contracts.simulation import Pose, Position
 
 
 class Moment(NamedTuple):
-    """State of an episode in one tick."""
+    """State of an episode after a decision, from which the environment makes observation, reward and info."""
 
     situation: NDArray[np.float64]
     """Recent features, then their averages if they are observed, in the units of the situation; shape (d,)."""
@@ -35,7 +35,7 @@ class Moment(NamedTuple):
 
 
 class AgentDrive(Protocol):
-    """Drive of an agent in a world, decision by decision."""
+    """Drive of one episode by an agent, decision by decision, in a batch or over the CAN bus."""
 
     @property
     def world(self) -> str:

@@ -20,7 +20,7 @@ class RewardKind(StrEnum):
 
 
 class DecisionOutcome(NamedTuple):
-    """One decision of an agent, with what came of it."""
+    """Decision of an agent and what came of it, from which a `Reward` computes the reward."""
 
     action: str
     teachers_answer: str
@@ -30,7 +30,7 @@ class DecisionOutcome(NamedTuple):
 
 
 class Reward(Protocol):
-    """Reward function of an environment."""
+    """Reward function of an environment, called once for each decision of the agent."""
 
     def reward(self, outcome: DecisionOutcome) -> int:
         """Return the reward of a decision: -1, 0 or +1."""

@@ -16,7 +16,7 @@ _NEW_FILE = "give the path of a new file"
 
 
 class KnowledgeCode(TextCode):
-    """Condition that keeps knowledge from being read or written."""
+    """Condition that keeps a knowledge file or package from being read or written, with text and remedy."""
 
     # SQLite
     LOCKS_STUCK = ("locks stuck", "its locks are stuck", f"{_HEALTH}, and restart the robot program" + _SQLITE)

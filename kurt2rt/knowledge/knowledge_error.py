@@ -8,7 +8,7 @@ from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 
 
 class KnowledgeError(UserError):
-    """Error of knowledge that cannot be read or written."""
+    """Knowledge file or package that cannot be read or written; `code` names the condition."""
 
     def __init__(self, code: KnowledgeCode, *, where: object = "", **fields: object) -> None:
         """Fill the code's text with `fields`; `where` names the file, with the row if it is about one."""

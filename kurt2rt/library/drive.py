@@ -17,7 +17,7 @@ from simbridge.contracts.simulation import Simulation
 
 
 class Drive(Episode):
-    """Episode whose caller takes the steps and is the teacher."""
+    """Simulated drive of kurt2rt.SimulatedRobot, whose caller takes the steps and gives the commands."""
 
     def __init__(
         self, simulation: Simulation, settings: RobotSettings, task: TaskSettings, training: TrainingStore, seed: int
@@ -60,7 +60,7 @@ class Drive(Episode):
         super().send(command)
 
     def repeat(self, other: "Drive", ticks: int) -> bool:
-        """Take so many steps with the commands of another drive from the same start.
+        """Take so many steps with the commands of another drive from the same start, to explain one of its ticks.
 
         Returns whether the last of them had the same situation and the same result, bit for bit.
         """

@@ -13,7 +13,7 @@ _KINDS = "a vcan interface such as vcan0, shared:NAME or virtual:NAME"
 
 
 class NoVcanError(UserError):
-    """The kernel has no such interface, or it is down."""
+    """Interface vcan0, or the one named instead, that the kernel does not have, or that is down."""
 
 
 def require_bus(name: str, settings: Kurt2Settings, net: Path = NET_FOLDER) -> None:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class ReplayedRun:
-    """Recorded run, and its comparison with a replay."""
+    """Recorded run after `replay`: whether the replay is equal to it, and its decisions to read and plot."""
 
     path: Path
     """Folder of the run."""

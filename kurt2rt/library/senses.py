@@ -13,7 +13,7 @@ SIDES = ("front", "left", "right", "rear")
 
 @dataclass(frozen=True, slots=True)
 class Sense:
-    """Newest reading of one sensor, or of the nearest reading of a side."""
+    """Newest reading of one sensor, or of the sensor of a side with the nearest reading."""
 
     name: str
     metres: float

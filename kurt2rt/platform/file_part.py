@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class FilePart(NamedTuple):
-    """Consecutive bytes of a file."""
+    """Part of a file as `/file` answers with it, and the size of the whole file."""
 
     size_bytes: int
     """Size of the whole file."""

@@ -10,7 +10,7 @@ import numpy as np
 
 
 class Stage(IntEnum):
-    """Stages of a tick, in order."""
+    """Stage of a tick, in order of time, as `TickTimer` measures them."""
 
     SENSE = 0
     PERCEIVE = 1
@@ -22,7 +22,7 @@ class Stage(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Percentiles:
-    """Percentiles of durations in µs, over the ticks kept."""
+    """Percentiles in µs of durations or latenesses of the ticks that `TickTimer` keeps."""
 
     median_us: float
     p99_us: float

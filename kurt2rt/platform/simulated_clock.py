@@ -8,7 +8,7 @@ _MEASURED_OVER_S = 1.0
 
 
 class HeldWorld(Protocol):
-    """World that runs in real time in its own thread, or is held and stepped."""
+    """World that a `SimulatedClock` drives: its own thread steps it in real time, or the clock does."""
 
     def hold(self) -> None:
         """Stop the world's own thread from stepping, until `go_on`."""
@@ -24,7 +24,7 @@ class HeldWorld(Protocol):
 
 
 class Speed(Protocol):
-    """Ratio of robot time to real time, chosen and measured."""
+    """Ratio of robot time to real time, for the teachers' channel: chosen, and as it was reached."""
 
     @property
     def wanted(self) -> int:

@@ -31,7 +31,7 @@ class Column:
 
 
 class TextTable:
-    """Rows of texts under headings.
+    """Table of texts for the terminal, wrapped to its width.
 
     A cell may hold line breaks. If a row takes several lines, empty lines part the rows. Without any heading there
     is neither a line of headings nor an empty line.

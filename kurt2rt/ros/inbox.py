@@ -40,7 +40,7 @@ class StampedAge:
 
 
 class Clock(Protocol):
-    """Clocks of this machine: monotonic for ages, and wall time for stamps."""
+    """Clocks by which messages are dated: monotonic for ages, and wall time for stamps."""
 
     def now_s(self) -> float:
         """Return the present in s, from any start, never backwards."""
@@ -52,7 +52,7 @@ class Clock(Protocol):
 
 
 class MachineClock:
-    """The clocks of this machine themselves."""
+    """Clocks of this machine, in s: monotonic, and wall clock since 1970; a simulation has its own."""
 
     now_s = staticmethod(time.monotonic)
     wall_s = staticmethod(time.time)

@@ -43,11 +43,11 @@ _STORE.register(
 
 
 class InvalidMessageError(ValueError):
-    """Bytes that are no message of the expected type."""
+    """Received bytes that are no message of the expected type, or a message that makes no sense."""
 
 
 class Message(Protocol):
-    """A ROS 2 message: one of the classes above."""
+    """Any ROS 2 message class of this module, with its type's name."""
 
     __msgtype__: ClassVar[str]
 

@@ -18,7 +18,7 @@ class RosConnectionError(BusError):
 
 
 class Publisher(Protocol):
-    """Sender of the messages of one topic."""
+    """Sender of one topic's messages, from `RosPort.publisher`."""
 
     def publish(self, message: Message) -> None:
         """Send a message without waiting. Raises RosConnectionError or kurt2rt.ros.messages.InvalidMessageError."""
@@ -73,7 +73,7 @@ class LocalTopics:
 
 
 class LocalPort:
-    """End of local topics (RosPort)."""
+    """One program's connection to topics in memory, for tests and simulations (RosPort)."""
 
     def __init__(self, topics: LocalTopics) -> None:
         self._topics = topics

@@ -205,7 +205,7 @@ class ZenohSession:
 
 
 class ZenohPublisher:
-    """Sender of the messages of one topic."""
+    """Sender of one topic's messages over zenoh (kurt2rt.ros.port.Publisher)."""
 
     def __init__(self, publisher: zenoh.Publisher, attachments: AttachmentSource | None) -> None:
         """Send by `publisher`, with `attachments` where rmw_zenoh reads them."""

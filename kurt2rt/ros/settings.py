@@ -39,7 +39,7 @@ class Naming(StrEnum):
 
 
 class RosSettings(Settings):
-    """Names of a robot's topics."""
+    """Domain, namespace and naming of a robot's topics on ROS 2, and the name of this program's node."""
 
     naming: Naming = Field(default=Naming.BRIDGE, strict=False)
     domain: Annotated[int, Field(ge=0, le=232)] = 0

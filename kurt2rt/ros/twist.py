@@ -19,7 +19,7 @@ class PlaneTwist(NamedTuple):
 
 
 class Twists:
-    """Wheel speeds as twists of one base, and back."""
+    """Converter between wheel speeds and twists of one base, in the steps to which the base cuts them off."""
 
     def __init__(self, settings: TwistSettings, robot: RobotSettings) -> None:
         """Take the distance of the wheels and the highest speed from `robot`."""

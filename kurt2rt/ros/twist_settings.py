@@ -8,7 +8,7 @@ from config.settings import Settings
 
 
 class TwistSettings(Settings):
-    """Kind and steps of twists."""
+    """Form of the twists that a base takes: message type, steps in m/s and rad/s, fastest turn."""
 
     stamped: bool
     """True for geometry_msgs/TwistStamped, False for geometry_msgs/Twist."""

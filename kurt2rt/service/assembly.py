@@ -30,7 +30,7 @@ from kurt2rt.service.settings import ServiceSettings
 
 @dataclass(frozen=True, slots=True)
 class RunSettings:
-    """Settings of robot, task and service of one run."""
+    """Settings that one run of the service needs: those of robot, task and service."""
 
     robot: RobotSettings
     task: TaskSettings
@@ -39,7 +39,7 @@ class RunSettings:
 
 @dataclass(frozen=True, slots=True)
 class RobotService:
-    """Runtime of one robot with the writer of its knowledge file."""
+    """Assembled runtime of one robot, and the thread that writes its lessons."""
 
     runtime: Runtime
     writer: JournalWriter

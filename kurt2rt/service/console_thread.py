@@ -11,7 +11,10 @@ _LAST_LINES_S = 1.0
 
 
 class ConsoleThread:
-    """Thread that runs submitted jobs in order; drops and counts jobs while its queue is full."""
+    """Thread that prints, so that a blocked terminal never delays the loop: it runs submitted jobs in order.
+
+    Jobs are dropped and counted while its queue is full.
+    """
 
     def __init__(self, remaining_s: Callable[[float], float] = lambda most_s: most_s) -> None:
         """`remaining_s`: returns the time that is left for a wait of the given length, in s."""

@@ -20,7 +20,10 @@ Command = Callable[[Path, Path], Sequence[str]]
 
 
 class LiveExam:
-    """One exam at a time; a thread reads the status that its process prints as lines of JSON (`exam_status.EXAM`)."""
+    """Exam of a running robot's knowledge in a process of its own, one at a time, and its status.
+
+    A thread reads the status that the process prints as lines of JSON (`exam_status.EXAM`).
+    """
 
     def __init__(self, command: Command, status: ExamStatus = NO_EXAM, picture: Path | None = None) -> None:
         """Start with the verdict of an earlier run on the same knowledge file.

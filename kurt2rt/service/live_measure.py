@@ -22,7 +22,10 @@ _FOLLOW_EVERY: Final = 5
 
 
 class LiveMeasure:
-    """Metric of the task for the robot that is taught; metres of way if that metric does not only observe."""
+    """Progress of a simulated robot with its task while it is taught, for the page.
+
+    It is measured by the task's metric, or in m of way if that metric does not only observe.
+    """
 
     def __init__(self, task: TaskSettings, simulation: Simulation) -> None:
         self._task = task

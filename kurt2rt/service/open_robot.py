@@ -14,7 +14,7 @@ from simbridge.contracts.simulation import SimulatedWorld, Simulation
 
 
 class OpenedRobot(NamedTuple):
-    """Robot, with its world if it is simulated."""
+    """Open robot to be driven, with the simulator's parts that the program needs if it is simulated."""
 
     robot: GuardedRobot
     simulated_world: SimulatedWorld | None
@@ -29,7 +29,7 @@ class OpenedRobot(NamedTuple):
 
 
 class RobotOpener(Protocol):
-    """Opener of a robot; `open_robot` is one."""
+    """Function that opens the robot of the settings, real or simulated; `open_robot` is one."""
 
     def __call__(
         self, settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None

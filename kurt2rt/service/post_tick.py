@@ -28,7 +28,7 @@ TickCallback = Callable[[TickRecord], Command | None]
 
 @dataclass(frozen=True, slots=True)
 class ProgramStatus:
-    """Status of the service after one tick."""
+    """Status of the service after a tick, as the console of the program shows it."""
 
     record: TickRecord
     runtime: Runtime
@@ -43,7 +43,7 @@ class ProgramStatus:
 
 @dataclass(frozen=True, slots=True)
 class ProgramConsole:
-    """Outputs of the service. The loop calls them: none may wait."""
+    """Callbacks by which the service tells the program's screen; the loop calls them, so none may wait."""
 
     status: Callable[[ProgramStatus], None]
     """Called once per status period."""

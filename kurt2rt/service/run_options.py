@@ -12,7 +12,7 @@ from kurt2rt.service.startup import RETRY_S
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunOptions:
-    """Options of the command line that are not in the settings."""
+    """Options of `kurt2rt run` that are not in the runtime settings."""
 
     bus: str = SIMULATED
     settings: str = "default"
@@ -49,7 +49,7 @@ class RunOptions:
 
 @dataclass(frozen=True, slots=True)
 class ProgramEnvironment:
-    """Environment of the program, replaced by tests."""
+    """Functions and times of the robot program that tests replace, such as the opener of the robot."""
 
     open_robot: RobotOpener = open_robot
     on_timeout: Callable[[ShutdownStage], None] | None = force_exit

@@ -56,7 +56,7 @@ _KEYS_S = 0.3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChannelOptions:
-    """Options of a run that teachers reach over the network."""
+    """Choices of the caller of `serve` for a run that teachers reach over the network."""
 
     bus_trouble: Callable[[], str] = lambda: ""
     """Returns what is wrong with the robot's bus, in a line; empty if nothing is."""
@@ -78,7 +78,7 @@ class ChannelOptions:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServeOptions:
-    """Optional parts of one run of the service."""
+    """Choices of the caller of `serve` beyond robot and settings; all have defaults."""
 
     on_tick: TickCallback | None = None
     """Teacher inside this program; None: no such teacher."""

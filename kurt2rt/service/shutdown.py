@@ -56,7 +56,7 @@ def run_delay_s() -> float:
 
 
 class ShutdownClock:
-    """Clock that stands while threads of this process wait for a processor."""
+    """Clock of the time limit of a shutdown; it stands while this process waits for a processor."""
 
     def __init__(
         self,
@@ -102,7 +102,7 @@ class ShutdownClock:
 
 
 class ShutdownStage(StrEnum):
-    """Part of the program that its end waits for."""
+    """Part of the program that its end is waiting for, named if the end takes too long."""
 
     START = "start"
     RUNTIME = "runtime"
@@ -264,7 +264,7 @@ def _ignore(_number: int, _frame: FrameType | None) -> None:
 
 @dataclass(frozen=True, slots=True)
 class ProcessContext:
-    """Parts of the process that the service uses."""
+    """Parts of the process that a service shares with the program: signals, service manager, log."""
 
     shutdown: ShutdownHandler
     notifier: Notifier

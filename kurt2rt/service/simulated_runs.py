@@ -42,7 +42,7 @@ _ZIP = b"PK"
 
 @dataclass(frozen=True, slots=True)
 class SimulatedRun:
-    """World, task, knowledge and teacher of one run."""
+    """World, task, knowledge file and teacher of one run of the simulated robot; teachers choose the next."""
 
     world: str
     task: TaskSettings
@@ -71,7 +71,10 @@ class SimulatedRun:
 
 
 class SimulatedRuns:
-    """The present run, and the next one once a teacher wants one (kurt2rt.channel.server.dependencies.RunControl)."""
+    """Present run of the simulated robot, and the next one that a teacher chooses.
+
+    It is the channel's kurt2rt.channel.server.dependencies.RunControl.
+    """
 
     def __init__(
         self,

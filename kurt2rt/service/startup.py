@@ -29,7 +29,7 @@ _MISSING = "{name}: {says}"
 
 
 class StartError(UserError):
-    """A folder of the program is missing."""
+    """Folder of the program, such as the one of the knowledge, that is missing; the start waits for it."""
 
 
 _WAITED_FOR = (StartError, BusError, KnowledgeError, ChannelError, CredentialsError, RecordingError, OSError)
@@ -37,7 +37,7 @@ _WAITED_FOR = (StartError, BusError, KnowledgeError, ChannelError, CredentialsEr
 
 
 class DependencyName(StrEnum):
-    """Thing that the program cannot start without."""
+    """Thing that the start of the robot program waits for, by its name in messages."""
 
     BUS = "bus"
     KNOWLEDGE = "knowledge"
@@ -48,7 +48,7 @@ class DependencyName(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Dependency:
-    """Check of a thing that the program cannot start without."""
+    """Thing that the program waits for at its start, and the check whether it is there."""
 
     name: DependencyName
     check: Callable[[], object]

@@ -12,7 +12,7 @@ _PROTOTYPE = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_int64)
 
 
 class PythonMind:
-    """Function in Python that compiled code may call by its address."""
+    """Python function that chooses actions, with an address by which the compiled loop calls it."""
 
     def __init__(self, decide: Callable[[int], int]) -> None:
         """Wrap `decide`, which returns the index of an action, or -1, for a robot by its index in the batch."""

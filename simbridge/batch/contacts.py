@@ -88,7 +88,7 @@ class ContactBody:
 
 
 class SetPoints:
-    """Set points of a batch, stretch by stretch, until the body of a robot catches up with them."""
+    """Set points of past stretches that the lagging body of a robot has yet to drive (`ContactBody`)."""
 
     def __init__(self) -> None:
         self._stretches: list[tuple[dict[int, int], NDArray[np.int16], NDArray[np.int64], NDArray[np.int64]]] = []
@@ -130,7 +130,10 @@ _WIDER = 0.1
 
 @compiled
 def keep_box(robot: Robot, law: BodyLaw) -> bool:
-    """Make a new box if the body has left the one before; return whether it has. Call it at the end of a tick."""
+    """Renew the engine's box round a body that has left it; return whether it did. Call it at the end of a tick.
+
+    The engine lists the walls near this box, and their order decides how it resolves contacts.
+    """
     cos, sin = math.cos(robot.heading_rad), math.sin(robot.heading_rad)
     left, lower, right, upper = math.inf, math.inf, -math.inf, -math.inf
     for corner in range(4):
@@ -153,7 +156,7 @@ def keep_box(robot: Robot, law: BodyLaw) -> bool:
 
 @compiled
 def meet_box(robot: Robot, law: BodyLaw) -> None:
-    """Keep the box of a body that the engine itself has moved in this tick."""
+    """Keep the box of a body after a tick in which the engine moved it; the engine knows this box already."""
     keep_box(robot, law)
     robot.box_is_new = 0
 

@@ -71,7 +71,10 @@ def _ray(rays: Floats, i: int) -> streets.Ray:
 
 @compiled
 def perceive(robot: Robot, features: Features, averages: Averages) -> None:
-    """Write the weighted situation of a robot, in counts; call it once in each tick."""
+    """Write the weighted situation of a robot, in counts, for the search of the nearest RLA.
+
+    Call it once in each tick, because it adds a step to the averages.
+    """
     width = features.kind.shape[0]
     for i in range(width):
         robot.situation[i] = feature_of(robot.counts, features, i) * features.weights[i]
@@ -118,7 +121,10 @@ def feature_of(counts: Integers, features: Features, i: int) -> int:
 
 @compiled
 def hold_or_change(robot: Robot, action: int, law: MindLaw) -> bool:
-    """Let an action drive a robot; return False if another one is held because its minimum time is not over."""
+    """Let an action drive a robot; return False if another one is held because its minimum time is not over.
+
+    The same rule as in kurt2rt.core.basic.held_action.
+    """
     if robot.action >= 0:
         if robot.action == action:
             return True
@@ -132,7 +138,10 @@ def hold_or_change(robot: Robot, action: int, law: MindLaw) -> bool:
 
 @compiled
 def step_action(robot: Robot, law: MindLaw) -> tuple[float, float]:
-    """Return the wheel speeds in m/s of the action that drives a robot."""
+    """Return the wheel speeds in m/s of a robot's action in this tick; call it once in each tick.
+
+    A finished turn stands.
+    """
     action = robot.action
     robot.action_ticks += robot.way_counts
     if law.wall[action, 0] >= 0:
@@ -151,7 +160,10 @@ def step_action(robot: Robot, law: MindLaw) -> tuple[float, float]:
 
 @compiled
 def decide(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge, averages: Averages) -> tuple[float, float]:
-    """Return the wheel speeds in m/s that a robot decides in tick `k` of the stretch, and enter the decision."""
+    """Return the wheel speeds in m/s that a robot's mind decides in tick `k` of the stretch, before the guard.
+
+    The action and the RLA go to the course of the stretch.
+    """
     robot.track_distance[k] = math.inf
     if robot.kind == KNOWLEDGE:
         perceive(robot, knowledge.features, averages)
@@ -170,7 +182,7 @@ def decide(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge, averages: A
 
 @compiled
 def right_action(robot: Robot, law: MindLaw) -> int:
-    """Return the index of the action that the policy takes for right."""
+    """Return the index of the action that the reference policy takes in a robot's present readings."""
     for i in range(law.seen.shape[0]):
         robot.seen[i] = law.distance_m[robot.counts[law.seen[i]]]
     return int(law.actions[policy_answer(robot.kind, robot.behaviour, robot.seen, law)])

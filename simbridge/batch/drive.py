@@ -20,7 +20,7 @@ _cos_sin = compiled(cos_sin)
 
 @compiled
 def turn_wheels(robot: Robot, laws: Laws) -> None:
-    """Simulate one cycle of both motors of a robot towards the set points of its last CONTROL frame."""
+    """Simulate one cycle of both motors towards the last CONTROL's set points (simbridge.robot.wheels)."""
     left_told_m_s, right_told_m_s = robot.left_cm_s / 100.0, robot.right_cm_s / 100.0
     robot.left_told_m_s, robot.right_told_m_s = left_told_m_s, right_told_m_s
     robot.left_m_s = _next_speed(robot.left_m_s, left_told_m_s, False, laws.side)
@@ -33,7 +33,10 @@ def turn_wheels(robot: Robot, laws: Laws) -> None:
 
 @compiled
 def move(robot: Robot, law: BodyLaw) -> bool:
-    """Simulate one cycle of the body of a robot without contacts; return whether its wheels' traction sufficed."""
+    """Simulate one cycle of a robot's body without contacts; return whether its wheels' traction sufficed.
+
+    If not, the physics engine has to move it in this tick.
+    """
     used = robot.slip_used
     left_slip = law.slip_keep * robot.left_slip + law.slip_gain * robot.slip_noise[used]
     right_slip = law.slip_keep * robot.right_slip + law.slip_gain * robot.slip_noise[used + 1]
@@ -88,7 +91,10 @@ def drive(
 
 @compiled
 def begin_tick(robot: Robot, world: World, laws: Laws) -> None:
-    """Run the robot's cycle up to its new pose: CONTROL of the tick before, motors, body."""
+    """Run the robot's cycle up to its new pose: CONTROL of the tick before, motors, body.
+
+    Sets `waits` if the body may touch something, so that the physics engine has to move it.
+    """
     robot.tick += 1
     k = robot.at
     robot.last_x_m, robot.last_y_m, robot.last_heading_rad = robot.x_m, robot.y_m, robot.heading_rad
@@ -161,7 +167,7 @@ def put_down(robot: Robot, world: World, laws: Laws) -> bool:
 
 @compiled
 def trace(robot: Robot, k: int) -> None:
-    """Store the readings of a commanded robot in tick `k` of the stretch, and the limits of its guard."""
+    """Store the readings and guard limits of a commanded robot in tick `k`, for `Trace`."""
     for i in range(robot.counts.shape[0]):
         robot.track_counts[k, i] = robot.counts[i]
     robot.track_left_ticks[k], robot.track_right_ticks[k] = robot.left_ticks, robot.right_ticks

@@ -14,7 +14,7 @@ Integers = NDArray[np.int64]
 
 
 class World(NamedTuple):
-    """Static faces and posts of the worlds of a batch; the first index is the world."""
+    """Walls and posts of all worlds of a batch as arrays, which do not move; the first index is the world."""
 
     faces: Floats
     """Corner x, y and vector to the next corner, in m, (worlds, faces, 4)."""
@@ -27,7 +27,7 @@ class World(NamedTuple):
 
 
 class BodyLaw(NamedTuple):
-    """Numbers of the body that all robots share."""
+    """Numbers of the robot's body for the compiled loop, equal for all robots of a batch."""
 
     cycle_s: float
     track_m: float
@@ -44,7 +44,7 @@ class BodyLaw(NamedTuple):
 
 
 class SensorLaw(NamedTuple):
-    """Numbers of the sensors that all robots share."""
+    """Numbers of the infra-red sensors for the compiled loop, equal for all robots of a batch."""
 
     cycle_s: float
     law: InfraredLawNumbers
@@ -73,7 +73,7 @@ class WatchLaw(NamedTuple):
 
 
 class GuardLaw(NamedTuple):
-    """Numbers of hal.guard.Guard for the compiled loop."""
+    """Limits and bumpers of the guard for the compiled loop, which repeats hal.guard.Guard."""
 
     cycle_s: float
     maximum_speed_m_s: float
@@ -85,7 +85,7 @@ class GuardLaw(NamedTuple):
 
 
 class MindLaw(NamedTuple):
-    """Tables of the policies and actions."""
+    """Tables of actions and reference policies for the compiled loop, equal for all robots of a batch."""
 
     minimum_ticks: int
     distance_m: Floats
@@ -116,7 +116,7 @@ class MindLaw(NamedTuple):
 
 
 class Features(NamedTuple):
-    """Features of a situation as arrays, for the compiled loop."""
+    """Features of a situation as arrays, from a `FeatureTable`, for the compiled loop."""
 
     kind: Integers
     """Kind of each feature (simbridge.batch.decisions)."""
@@ -144,7 +144,7 @@ class Averages(NamedTuple):
 
 
 class Conditions(NamedTuple):
-    """Weighted conditions of all RLAs, and which of them are near each other."""
+    """Weighted conditions of all RLAs, with the neighbours of each for the search of the nearest one."""
 
     values: Floats
     """Weighted conditions in counts, (rows, values); the number of values is a multiple of eight."""
@@ -173,7 +173,7 @@ class Knowledge(NamedTuple):
 
 
 class StuckLaw(NamedTuple):
-    """Rule of being stuck (simbridge.contracts.batch.StuckRule)."""
+    """Rule of being stuck for the compiled loop (simbridge.contracts.batch.StuckRule)."""
 
     every_ticks: int
     positions: int
@@ -182,7 +182,7 @@ class StuckLaw(NamedTuple):
 
 
 class Laws(NamedTuple):
-    """All numbers that the robots share."""
+    """All numbers and tables for the compiled loop that the robots of a batch share."""
 
     body: BodyLaw
     side: SideLaw

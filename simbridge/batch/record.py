@@ -254,7 +254,7 @@ class Robot:
 
 
 class Sizes(NamedTuple):
-    """Sizes of the arrays in a record."""
+    """Lengths of the arrays in a robot's record; slots are the cycles of the sensors' calendar."""
 
     sensors: int
     slots: int
@@ -283,7 +283,7 @@ _question_ticks = compiled(question_ticks)
 
 @compiled
 def count_tick(robot: Robot, law: StuckLaw) -> None:
-    """Count the present tick of a robot."""
+    """Count the present tick of a robot: its question, first collision, way, and whether it is stuck."""
     asks = robot.action < 0
     begins = asks and robot.question_left == 0
     robot.question_left = _question_ticks(robot.question_left, asks, robot.sure != 0, robot.turned != 0)

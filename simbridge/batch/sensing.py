@@ -14,7 +14,7 @@ _cos_sin = compiled(cos_sin)
 
 @compiled
 def measure(robot: Robot, law: SensorLaw) -> None:
-    """Let the due sensors of a robot measure in its present cycle, and enter their next turns."""
+    """Let the sensors whose turn it is measure in a robot's present cycle, and enter their next turns."""
     cycle = robot.tick - 1
     slot = cycle % robot.slots
     due = robot.calendar_count[slot]

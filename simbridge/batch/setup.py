@@ -55,7 +55,7 @@ _ThresholdsT = TypeVar(
 
 
 def build_laws(robot: Kurt2Settings, one: SimulatedKurt2, minds: Sequence[Mind], settings: DriveSettings) -> Laws:
-    """Return the numbers that all robots of a batch share; `one` of them."""
+    """Return the numbers that all robots of a batch share, read from settings and `one` simulated robot."""
     cycle_s = robot.cycle_s
     return Laws(
         body=build_body_law(robot, one.body),

@@ -27,7 +27,7 @@ def away2_m2(dx: float, dy: float, edge_x: float, edge_y: float) -> float:
 
 @compiled
 def gather(robot: Robot, world: World) -> bool:
-    """Keep the faces and posts near a robot; return False if they are too many."""
+    """Keep the faces and posts near a robot, for rays and contacts; return False if they are too many."""
     x_m, y_m, place = robot.x_m, robot.y_m, robot.world
     keep_m = world.reach_m + MARGIN_M + 1e-6
     faces = posts = 0
@@ -57,7 +57,7 @@ def gather(robot: Robot, world: World) -> bool:
 
 @compiled
 def has_moved(robot: Robot) -> bool:
-    """Return whether a robot has moved so far that other faces may be near."""
+    """Return whether a robot has moved so far since `gather` that other faces may be near."""
     dx, dy = robot.x_m - robot.gathered_x_m, robot.y_m - robot.gathered_y_m
     return not dx * dx + dy * dy <= MARGIN_M * MARGIN_M
 

@@ -37,7 +37,7 @@ _NO_FEATURES = FeatureTable((), (), (), 1)
 
 
 def kind_of(mind: Mind) -> int:
-    """Return the kind of a mind (simbridge.batch.decisions)."""
+    """Return the number by which the compiled loop knows a kind of mind (simbridge.batch.decisions)."""
     match mind:
         case TaughtMind():
             return KNOWLEDGE
@@ -190,7 +190,10 @@ def build_features(table: FeatureTable) -> Features:
 
 
 def padded_width(table: FeatureTable) -> int:
-    """Return the number of values of a weighted condition, with zeros up to a multiple of eight."""
+    """Return the number of values of a weighted condition in the arrays, which is a multiple of eight.
+
+    Zeros fill it up, so that the compiler can add eight squares at once.
+    """
     return -(-(len(table.kinds) + len(table.average_weights)) // LANES) * LANES
 
 

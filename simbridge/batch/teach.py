@@ -19,7 +19,7 @@ _advance_way = compiled(advance_way)
 
 
 class Learner(NamedTuple):
-    """State of the robot's mind, each in an array of its own, so that it can be copied."""
+    """State of a taught robot's mind between ticks, as arrays that are copied to take ticks back."""
 
     sums: Integers
     """Sums of the features over the steps of the average, (features,)."""
@@ -31,7 +31,7 @@ class Learner(NamedTuple):
 
 
 class Orders(NamedTuple):
-    """Orders that hold until the next command."""
+    """Orders of the teacher to a taught robot in a batch, which hold until its next command."""
 
     stopped: bool
     held: int
@@ -40,7 +40,7 @@ class Orders(NamedTuple):
 
 
 class Table(NamedTuple):
-    """RLAs of the lesson, oldest first; rows after the last one are free."""
+    """RLAs that a taught robot decides by, in arrays with free rows for later lessons; oldest first."""
 
     rows: Integers
     """Number of RLAs, (1,)."""

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 
 class Area(NamedTuple):
-    """Rectangle whose edges run along the axes."""
+    """Rectangle of a world, such as a junction, whose edges run along the axes; lengths in m."""
 
     x_m: float
     """Centre."""

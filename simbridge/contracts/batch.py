@@ -19,7 +19,7 @@ STANDS = -1
 
 
 class FeatureKind(IntEnum):
-    """Kind of a recent feature of a situation."""
+    """Kind of a situation's feature, as far as the compiled loop knows it."""
 
     READING = 0
     MAXIMUM = 1
@@ -31,7 +31,7 @@ class FeatureKind(IntEnum):
 
 
 class FeatureTable(NamedTuple):
-    """Features of a situation, in its order; a weight of 0 counts for nothing in a distance."""
+    """Features of a situation as a batch needs them, in their order; a weight of 0 counts for nothing."""
 
     kinds: tuple[FeatureKind, ...]
     sensors: tuple[tuple[int, ...], ...]
@@ -59,7 +59,7 @@ class TabledPolicy(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class PolicyMind:
-    """Robot that drives by a reference policy."""
+    """Mind of a robot in a batch that drives by a reference policy, not by RLAs."""
 
     policy: TabledPolicy
 
@@ -82,7 +82,7 @@ class TaughtMind:
 
 @dataclass(frozen=True, slots=True)
 class CommandedMind:
-    """Robot that drives by the newest command, and stands before the first one."""
+    """Mind of a robot in a batch that drives by `Batch.command`; it stands before the first one."""
 
 
 Choose = Callable[[str, NDArray[np.float64]], str | None]
@@ -103,14 +103,14 @@ Mind = PolicyMind | TaughtMind | CommandedMind | CallbackMind
 
 
 class FixedSpeeds(NamedTuple):
-    """Action with fixed set points."""
+    """Action of a batch that has fixed set points."""
 
     left_m_s: float
     right_m_s: float
 
 
 class WallDistance(NamedTuple):
-    """Action that keeps a distance from a wall (behaviors.keep_distance)."""
+    """Action of a batch that keeps a distance from a wall, with the numbers of behaviors.keep_distance."""
 
     front: int
     """Place of the sensor in front in the sensor table."""
@@ -150,7 +150,7 @@ class StuckRule(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriveSettings:
-    """Settings that all robots of a batch share."""
+    """Settings that all robots of a batch share: actions, behaviours, and the rule of being stuck."""
 
     actions: Mapping[str, Action]
     """Actions that the batch knows, by name."""
@@ -163,7 +163,10 @@ class DriveSettings:
 
 
 class Stretch(NamedTuple):
-    """Course of one robot over the newest stretch of ticks, one value for each tick."""
+    """Course of one robot over the ticks of the newest `Batch.drive`, from which metrics measure its drive.
+
+    Each list has one value for each tick.
+    """
 
     poses: list[Pose]
     actions: list[int]
@@ -179,7 +182,7 @@ class Stretch(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """Counts of one robot's whole drive so far; ticks are counted from 1."""
+    """Counts of one robot's drive since its start, for the result of an exam; ticks are counted from 1."""
 
     ticks: int
     unknown_ticks: int
@@ -296,12 +299,12 @@ class FollowedSimulation(Simulation, Protocol):
         ...
 
     def carry(self, pose: Pose) -> None:
-        """Set the robot to the pose in m and rad at which the batch put it."""
+        """Set the robot to the pose in m and rad at which `Batch.put` has put it."""
         ...
 
 
 class Start(NamedTuple):
-    """World and seed of a simulation."""
+    """World of a simulation, and the seed that draws its robot, start pose and noise."""
 
     world: str
     seed: int
@@ -309,7 +312,7 @@ class Start(NamedTuple):
 
 @runtime_checkable
 class BatchFactory(SimulationFactory, Protocol):
-    """Opens simulations, and batches of their robots."""
+    """Factory of simulations that can also drive the robots of many at once, in a compiled batch."""
 
     def open(self, world: str, seed: int, purpose: str) -> FollowedSimulation:
         """Open a simulation of a robot (simbridge.contracts.simulation.SimulationFactory)."""

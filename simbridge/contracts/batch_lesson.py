@@ -17,7 +17,7 @@ from simbridge.contracts.simulation import Pose, Simulation, SimulationFactory
 
 
 class LessonCause(IntEnum):
-    """Cause of the decision of one tick."""
+    """Cause of a tick's decision in the log of a compiled lesson."""
 
     RLA = 0
     HELD = 1
@@ -33,7 +33,10 @@ class LessonCause(IntEnum):
 
 
 class LessonLog(NamedTuple):
-    """Course of a lesson, one row for each tick; row 0 is the robot before its first tick."""
+    """Course of a compiled lesson, one row for each tick, which its teacher reads and commands look back in.
+
+    Row 0 is the robot before its first tick.
+    """
 
     features: NDArray[np.int16]
     """Recent features in counts, (ticks + 1, features)."""
@@ -65,7 +68,7 @@ class LessonLog(NamedTuple):
 
 
 class TaughtRlas(NamedTuple):
-    """RLAs of the wanted behaviour, which compete, oldest first."""
+    """RLAs that a compiled robot decides by: those of the wanted behaviour, which compete, oldest first."""
 
     rla_ids: Sequence[int]
     conditions: Sequence[NDArray[np.float64]]
@@ -76,7 +79,7 @@ class TaughtRlas(NamedTuple):
 
 
 class LessonMode(NamedTuple):
-    """Orders that hold until the teacher's next command: a stop, a held action, a lesson speed."""
+    """Orders of the teacher that hold until the next command: a stop, a held action, a lesson speed."""
 
     stopped: bool = False
     """The robot stands until a resume."""
@@ -88,7 +91,7 @@ class LessonMode(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LessonDriveSettings:
-    """Settings of a robot that is taught in a batch."""
+    """Settings of a robot that is taught in a batch: actions, features, and the teacher's policy."""
 
     actions: dict[str, Action]
     """Actions that the robot may be taught, by name."""
@@ -109,7 +112,7 @@ class LessonDriveSettings:
 
 
 class LessonRobot(Protocol):
-    """Robot that is taught, and drives in compiled stretches."""
+    """Simulation of a robot that is taught while it drives in compiled stretches between commands."""
 
     @property
     def actions(self) -> tuple[str, ...]:
@@ -197,7 +200,7 @@ class TaughtSimulation(Simulation, Protocol):
 
 @runtime_checkable
 class LessonFactory(SimulationFactory, Protocol):
-    """Opens simulations whose robots are taught in a batch."""
+    """Factory of simulations whose robots are taught in compiled stretches."""
 
     def open_lesson(self, world: str, seed: int, purpose: str, settings: LessonDriveSettings) -> TaughtSimulation:
         """Open a simulation (simbridge.contracts.simulation.SimulationFactory) with a compiled robot.

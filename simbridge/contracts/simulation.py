@@ -49,7 +49,7 @@ class SimulatedPlace(NamedTuple):
 
 
 class Wall(NamedTuple):
-    """A wall or a box from above."""
+    """Wall or box of a world, seen from above."""
 
     name: str
     corners: tuple[tuple[float, float], ...]
@@ -57,7 +57,7 @@ class Wall(NamedTuple):
 
 
 class SimulatedPost(NamedTuple):
-    """A round obstacle from above."""
+    """Round obstacle of a world, seen from above."""
 
     name: str
     x_m: float
@@ -66,7 +66,7 @@ class SimulatedPost(NamedTuple):
 
 
 class Street(NamedTuple):
-    """A straight street by its middle line."""
+    """Straight street of a world by its middle line, which may cross several junctions; in m."""
 
     from_m: tuple[float, float]
     to_m: tuple[float, float]
@@ -74,7 +74,7 @@ class Street(NamedTuple):
 
 
 class WorldPlan(NamedTuple):
-    """A world from above, with walls and obstacles at their present places."""
+    """World from above with walls at their present places, for metrics, drawings and the teacher's page."""
 
     version: int
     """Grows when a wall or an obstacle is moved."""
@@ -185,7 +185,7 @@ class Simulation(Protocol):
 
 
 class SimulationFactory(Protocol):
-    """Opens simulations and draws their worlds."""
+    """Opener of simulations of one robot in named worlds; it also checks and draws these worlds."""
 
     def open(self, world: str, seed: int, purpose: str) -> Simulation:
         """Open a simulation of the robot in a world, by name.
@@ -233,7 +233,7 @@ class SimulationFactory(Protocol):
 
 
 class WorldView(Protocol):
-    """The world of a simulation, as a recording shows it. No call waits."""
+    """View of a simulated world for recordings: the robot's true place, and the world. No call waits."""
 
     def place(self) -> SimulatedPlace:
         """Return the true place of the robot."""
@@ -245,7 +245,7 @@ class WorldView(Protocol):
 
 
 class SimulatedWorld(WorldView, Protocol):
-    """The world of a running simulation, as a teacher sees and changes it.
+    """World of a running simulation, as a teacher sees and changes it.
 
     No call waits; changes happen between two steps of the simulation.
     """
@@ -267,7 +267,7 @@ class SimulatedWorld(WorldView, Protocol):
 
 
 class HeldThread(Protocol):
-    """Thread that steps a simulation in real time, unless it is held and its owner steps."""
+    """Thread that steps a simulation in real time; a clock can hold it and step by itself, to go faster."""
 
     def hold(self) -> None:
         """Stop the thread from stepping, until `go_on`."""
@@ -283,7 +283,7 @@ class HeldThread(Protocol):
 
 
 class RunningWorld(SimulatedWorld, Protocol):
-    """The world of a simulation that runs in real time, and its thread."""
+    """World of a simulation in real time, with the thread that steps it."""
 
     @property
     def held_world(self) -> HeldThread:
@@ -297,7 +297,7 @@ class RunningWorld(SimulatedWorld, Protocol):
 
 
 class LiveSimulation(NamedTuple):
-    """Simulation that runs in real time."""
+    """Simulation in real time with the driver of its robot, and the world that a teacher can change."""
 
     simulation: Simulation
     robot: GuardedRobot

@@ -5,7 +5,7 @@ from typing import NamedTuple, Protocol
 
 
 class MotorCommands(NamedTuple):
-    """Commands for the two motors in one cycle."""
+    """Set points and brakes that a simulated robot's electronics give its motors in one cycle."""
 
     left_m_s: float
     right_m_s: float
@@ -18,7 +18,7 @@ MOTORS_BRAKED = MotorCommands(0.0, 0.0, left_brake=True, right_brake=True)
 
 
 class Controller(Protocol):
-    """Controller of a robot on its link: set points in, motor commands, reports out, once in each cycle."""
+    """Electronics of a simulated robot at its end of the link: once a cycle, set points in, reports out."""
 
     @property
     def commands(self) -> MotorCommands:
@@ -47,7 +47,7 @@ class Controller(Protocol):
 
     @property
     def state(self) -> tuple[int, ...]:
-        """Inputs of the next cycle besides the present commands, for the state hash."""
+        """All that decides the next cycle, besides the present commands, as numbers for the state hash."""
         ...
 
     def receive(self) -> None:

@@ -13,7 +13,7 @@ from simbridge.robot.instruments import Instruments
 
 
 class SendingPort(Protocol):
-    """Sender of telemetry frames (hal.bus.FramePort)."""
+    """Sender of the frames of a simulated KURT2, except CONTROL (hal.bus.FramePort)."""
 
     def send(self, frame: can.Message) -> None:
         """Send a frame without blocking. Raises hal.bus.BusError."""
@@ -25,7 +25,7 @@ class SendingPort(Protocol):
 
 
 class ControllerBus(Protocol):
-    """Bus of the controller (hal.bus.CanBus)."""
+    """CAN bus as the simulated micro-controller uses it: frames in, telemetry out (hal.bus.CanBus)."""
 
     def drain(self) -> list[can.Message]:
         """Return the received frames, oldest first, without blocking. Raises hal.bus.BusError."""
@@ -47,7 +47,10 @@ _MESSAGES = ("ADC00_03", "ADC04_07", "ADC08_11", "BDC00_03", "BDC04_07", "BDC08_
 
 
 class AnalogFrames:
-    """Newest frame of each analog message; channels without a sensor are grounded and read 0."""
+    """Frames that carry the sensors' counts, packed with their newest readings.
+
+    Channels without a sensor are grounded and read 0.
+    """
 
     def __init__(self, infrared: Kurt2InfraredSettings, codec: Codec) -> None:
         """Find each sensor's frame and position. Raises SettingsError for a sensor on another channel."""

@@ -26,7 +26,7 @@ _TRACTION_M_S2 = 6.0
 
 
 class Contact(NamedTuple):
-    """Point where a wall touches the body, and the unit direction towards the wall, both in the body's frame."""
+    """Point at which the body touches a wall, and the unit vector towards the wall, in the body's frame."""
 
     x_m: float
     y_m: float

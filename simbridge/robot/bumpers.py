@@ -14,7 +14,7 @@ _HEAD_ON = 0.5
 
 
 class Bumpers:
-    """Bits of BUMPERC from contact points; the bumpers of an end divide its width evenly, left to right."""
+    """Converter of contact points to BUMPERC's bits; the bumpers of an end share its width, left to right."""
 
     def __init__(self, bumpers: Sequence[BumperSettings], geometry: GeometrySettings) -> None:
         self._half_length_m = geometry.outline_length_m / 2

@@ -25,7 +25,7 @@ _U32 = 1 << 32
 
 
 class Instruments:
-    """Raw values of the slow telemetry frames, in the order of their signals."""
+    """Simulated instruments other than distance sensors, whose raw values the slow telemetry frames carry."""
 
     def __init__(self, robot: RobotSettings, body: Body, wheels: Wheels) -> None:
         self._body = body

@@ -10,7 +10,7 @@ _NONE: NDArray[np.float64] = np.zeros(0)
 
 
 class Noise:
-    """Seeded stream of random numbers, equal in every process."""
+    """Stream of random numbers for one part of the simulation; equal seeds give equal numbers everywhere."""
 
     def __init__(self, seed: int, stream: str) -> None:
         """Open the named stream of a seed; streams are independent, so one part's draws never shift another's."""

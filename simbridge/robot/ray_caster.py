@@ -23,7 +23,10 @@ _CORNER = 1e-9
 
 
 class RayCaster:
-    """Ray caster from points near an origin; it caches the faces in range until the origin or a wall moves."""
+    """Finder of the nearest wall along rays from near an origin, such as a robot's sensors.
+
+    It caches the faces in range until the origin or a wall moves.
+    """
 
     def __init__(self, world: World, reach_m: float) -> None:
         """Cast rays that end within `reach_m` of the origin."""
@@ -100,6 +103,9 @@ class RayCaster:
 
 
 def faces_of(world: WorldSettings) -> NDArray[np.float64]:
-    """Return each face as corner and vector to the next corner, (n, 4)."""
+    """Return the faces of a world's walls and boxes in m, (n, 4).
+
+    A face has x and y of a corner, and the vector to the next corner.
+    """
     edges = edges_of(world.outline[:-1]) + [edge for solid in world.solids for edge in edges_of(solid)]
     return np.array([(a[0], a[1], b[0] - a[0], b[1] - a[1]) for a, b in edges])

@@ -11,7 +11,7 @@ REVERSAL_SPEED_M_S = 0.02
 
 
 class SideLaw(NamedTuple):
-    """Numbers of the motor of one side."""
+    """Numbers of the speed loop of one side's motor, for one cycle."""
 
     loop_gain: float
     """Fraction of the difference to the set point that a cycle takes away."""

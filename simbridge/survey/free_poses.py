@@ -22,7 +22,10 @@ _TRIES = 100_000
 
 
 class FreePoses:
-    """Sampler of collision-free poses that have something in view: a post, if the world has posts."""
+    """Sampler of collision-free poses at which a robot can be set down with something in view.
+
+    That is a post, if the world has posts.
+    """
 
     def __init__(self, world: World, robot: RobotSettings) -> None:
         self._world = world

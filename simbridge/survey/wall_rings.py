@@ -35,7 +35,7 @@ Ring = shapely.LinearRing
 
 
 class RingPlace(NamedTuple):
-    """Place on a ring of walls: the ring and the way along it."""
+    """Place that a robot follows on a ring of walls, by which its laps are measured."""
 
     ring: int
     """Index of the ring; 0 is the outer wall's."""
@@ -44,7 +44,7 @@ class RingPlace(NamedTuple):
 
 
 class WallRings:
-    """Rings of one room, and a search for the place on them that a robot follows."""
+    """Rings along the walls of one room, the outer wall first, and the search for a robot's place on them."""
 
     def __init__(self, world: WorldSettings, position: Point, scale: float = 1.0) -> None:
         """Survey the room of `world` that contains `position`, in m, or is closest to it.

@@ -42,7 +42,7 @@ class WallSettings(Settings):
 
 
 class RoundObstacleSettings(Settings):
-    """Entry of a world file for a round post."""
+    """Entry of a world's file for a round post."""
 
     name: str
     x_m: Coordinate

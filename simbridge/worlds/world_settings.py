@@ -28,7 +28,7 @@ _EQUAL_DEG = 1.0
 
 
 class StartPoseSettings(Settings):
-    """Start pose of a lesson or exam."""
+    """Entry of a world's file for a pose at which lessons or exams may start."""
 
     x_m: Coordinate
     y_m: Coordinate

@@ -95,7 +95,7 @@ class SensorAges:
 
 @dataclass(frozen=True, slots=True)
 class BusHealth:
-    """Counters of the robot's bus since it was opened."""
+    """Part of the health report on the robot's bus: counters since it was opened (hal.health.Health)."""
 
     controller: Title
     """State of this machine's CAN controller: a value of hal.bus_state.ControllerState."""
@@ -123,7 +123,7 @@ class DiskSpace:
 
 @dataclass(frozen=True, slots=True)
 class JournalHealth:
-    """State of the lessons on their way to the disk."""
+    """Part of the health report on the journal: lessons that are not durable yet, and the last write."""
 
     unwritten: Number
     """Number of lessons that are not durable yet."""
@@ -133,7 +133,7 @@ class JournalHealth:
 
 @dataclass(frozen=True, slots=True)
 class MachineHealth:
-    """Program and the machine that it runs on."""
+    """Part of the health report on the machine that runs the robot program: memory, processor, battery."""
 
     memory_bytes: Number
     """Memory of the program; 0 if the kernel does not tell."""
@@ -158,7 +158,7 @@ class Drops:
 
 @dataclass(frozen=True, slots=True)
 class HealthReport:
-    """Health of program, bus, disks and machine at one tick."""
+    """Report on program, bus, disks and machine once a second, for the page, `kurt2rt status` and ROS 2."""
 
     version: Title
     """Version of kurt2rt."""

@@ -83,7 +83,7 @@ def lines_of(report: HealthReport | None) -> tuple[str, ...]:
 
 
 def progress_in(progress: Progress) -> str:
-    """Return a text: percentage driven by RLAs, and how often it stood and asked what to do, over the last minute."""
+    """Return the progress of the last minute in words: the share driven by RLAs, and questions."""
     if progress.driven_percent is None:
         return "nothing was driven yet"
     asks = "asked what to do once" if progress.asks == 1 else f"asked what to do {progress.asks} times"
@@ -106,7 +106,7 @@ _NAMES = {
 
 
 def name_of(trouble: Trouble) -> str:
-    """Return the fault in one or two words."""
+    """Return the subject of a fault in one or two words, for a headline."""
     return _NAMES.get(trouble.about, trouble.about)
 
 

@@ -29,7 +29,7 @@ Words = Annotated[tuple[Word, ...], UpTo(256)]
 
 
 class AppraisalName(NamedTuple):
-    """Name of an appraisal for teaching the critic, with its value."""
+    """Appraisal that a teacher can give to teach the critic: its name and value, as `Hello` lists them."""
 
     name: Word
     value: Annotated[int, OneOf((-1, 0, 1))]
@@ -48,7 +48,7 @@ class MidIntroduction(NamedTuple):
 
 
 class SensorPlace(NamedTuple):
-    """Pose of an infra-red sensor in the robot's frame: x forward, y to the left."""
+    """Name and pose of an infra-red sensor, as `Hello` tells them: x forward, y to the left."""
 
     name: Word
     label: Word

@@ -21,7 +21,7 @@ class Contradicting(NamedTuple):
 
 
 class LessonLine(NamedTuple):
-    """Lesson in the list, with its present state."""
+    """Lesson as the robot lists it for its teachers, newest first, with whether it stands or was undone."""
 
     command_id: Title
     """Name in the journal, to be given to `undo`."""

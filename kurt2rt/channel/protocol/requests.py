@@ -27,7 +27,7 @@ Angle = Annotated[float, Float(100.0, "rad")]
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """Message to one path; its fields are the places of the body, in order."""
+    """Base of all requests to the robot: a message to one path, whose body has its fields in order."""
 
     path: ClassVar[str]
 
@@ -57,7 +57,7 @@ class CommandRequest(Request):
 
 @dataclass(frozen=True, slots=True)
 class TickRequest(CommandRequest):
-    """Command for the next tick."""
+    """Request with a command that goes to the inbox and is carried out in the next tick."""
 
     command: Single
     """Command without its teacher, whose id lacks the teacher's name; its fields follow in the body."""
@@ -100,12 +100,12 @@ def _at(path: str) -> Callable[[type[_RequestT]], type[_RequestT]]:
 
 @_at("/hello")
 class HelloRequest(Request):
-    """Query of the robot's description."""
+    """Query of the robot's description: its task, sensors, actions and limits (`Hello`)."""
 
 
 @_at("/stop")
 class StopRequest(Request):
-    """Stop. It needs neither a boot id nor a fresh state."""
+    """Command of any device that stops the robot; it needs neither a boot id nor a fresh state."""
 
     command_id: CommandId
     press_id: Number | None = None
@@ -115,12 +115,12 @@ class StopRequest(Request):
 
 @_at("/situations")
 class SituationsRequest(Request):
-    """Query of the named situations."""
+    """Query of the situations that teachers have named as goals."""
 
 
 @_at("/save")
 class SaveRequest(CommandRequest):
-    """Copy the knowledge on the robot."""
+    """Request to copy the knowledge file into a file on the robot, which `/file` then reads."""
 
     label: Annotated[str, Text(LONGEST_TEXT)] = ""
     """Part of the copy's name."""
@@ -128,14 +128,17 @@ class SaveRequest(CommandRequest):
 
 @_at("/export")
 class ExportRequest(CommandRequest):
-    """Write the RLAs as a table on the robot, or all knowledge as one file to give away."""
+    """Command that writes a file on the robot, which `/file` then reads.
+
+    It holds the RLAs as a table, or all knowledge as a package to give away.
+    """
 
     form: Annotated[str, OneOf((TABLE, PACKAGE))] = TABLE
 
 
 @_at("/file")
 class FileRequest(Request):
-    """Query of one part of a file that `/save` or `/export` of this start made."""
+    """Query of one part of a file that `/save` or `/export` made since this start of the program."""
 
     name: Annotated[str, Text(LONGEST_FILE_NAME, least=1)]
     offset: Number
@@ -144,17 +147,20 @@ class FileRequest(Request):
 
 @_at("/exam")
 class ExamRequest(CommandRequest):
-    """Examine a copy of the present knowledge in simulation, while the robot goes on; /exam/standing has the result."""
+    """Command that examines a copy of the knowledge in simulation, while the robot goes on.
+
+    /exam/standing has the result.
+    """
 
 
 @_at("/exam/standing")
 class ExamStatusRequest(Request):
-    """Query of the exam's status."""
+    """Query of the exam under way or the newest one; answered with an `ExamStatus`."""
 
 
 @_at("/lessons")
 class LessonsRequest(Request):
-    """Query of the newest lessons."""
+    """Query of the `count` newest lessons; answered with a `LessonLine` each."""
 
     count: Annotated[int, Int(0, MOST_LESSONS)]
 
@@ -166,17 +172,17 @@ class HealthRequest(Request):
 
 @_at("/why")
 class WhyRequest(Request):
-    """Query of the facts behind the newest decision."""
+    """Query of the facts behind the newest decision, from which the device explains it in words."""
 
 
 @_at("/world")
 class WorldRequest(Request):
-    """Query of the simulated world."""
+    """Query of the simulated world's outline, walls and posts from above; refused by a real robot."""
 
 
 @_at("/world/move")
 class MoveWallRequest(CommandRequest):
-    """Shift a wall of the simulated world."""
+    """Command that shifts a wall or a post of the simulated world by `dx_m` and `dy_m`."""
 
     name: Name
     dx_m: Way
@@ -185,7 +191,7 @@ class MoveWallRequest(CommandRequest):
 
 @_at("/world/place")
 class PlaceRequest(CommandRequest):
-    """Put the simulated robot down elsewhere."""
+    """Command that sets the simulated robot down at a pose of the world, in m and rad."""
 
     moves: ClassVar[bool] = True
     x_m: Way
@@ -195,19 +201,19 @@ class PlaceRequest(CommandRequest):
 
 @_at("/world/start")
 class BackToStartRequest(CommandRequest):
-    """Put the simulated robot down at the start of its run."""
+    """Command that sets the simulated robot down where its run began."""
 
     moves: ClassVar[bool] = True
 
 
 @_at("/simulation")
 class SimulationRequest(Request):
-    """Query of the simulated world and task, and of those to choose from."""
+    """Query of a simulated robot's world, task and speed, and of the choices for its next run."""
 
 
 @_at("/simulation/run")
 class NextRunRequest(CommandRequest):
-    """End this run and begin the next one, in which the robot stands until GO."""
+    """Command that ends the run of a simulated robot and begins the next one, in which it stands until GO."""
 
     world: Name | None
     """None: the present world."""
@@ -219,7 +225,7 @@ class NextRunRequest(CommandRequest):
 
 @_at("/simulation/speed")
 class SpeedRequest(CommandRequest):
-    """Set the speed of robot time."""
+    """Command that lets a simulated robot's time pass faster than real time."""
 
     times: Annotated[int, Int(1, FASTEST)]
     """Robot seconds in one second."""
@@ -227,7 +233,7 @@ class SpeedRequest(CommandRequest):
 
 @_at("/upload")
 class UploadRequest(Request):
-    """One part of a file, in order; a repeated part changes nothing."""
+    """Part of a file that a device uploads, in order, for `/load`; a repeated part changes nothing."""
 
     boot: Boot
     upload: UploadId
@@ -239,7 +245,7 @@ class UploadRequest(Request):
 
 @_at("/load")
 class LoadRequest(CommandRequest):
-    """Begin the next run with the uploaded knowledge, in simulation."""
+    """Command that ends the run of a simulated robot, and begins the next one with uploaded knowledge."""
 
     upload: UploadId
     sha256: Annotated[bytes, Bytes(SHA256_BYTES)]

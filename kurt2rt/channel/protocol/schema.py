@@ -13,7 +13,7 @@ from kurt2rt.core.message_fields import WireError, wire_error
 
 
 class ChannelError(UserError):
-    """The teacher's channel cannot be opened."""
+    """Teachers' channel that cannot be opened, because its address or UDP port is not to be had."""
 
 
 class _NoTags(Mapping[int, Any]):

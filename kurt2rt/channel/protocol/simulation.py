@@ -11,7 +11,7 @@ from simbridge.contracts.simulation import SimulatedPost, Wall
 
 @dataclass(frozen=True, slots=True)
 class WorldVerdict:
-    """Result of the exam in one world."""
+    """Result of an exam in one world, compared with the drive of the teacher's own policy there."""
 
     world: Title
     passed: Truth
@@ -23,7 +23,7 @@ class WorldVerdict:
 
 @dataclass(frozen=True, slots=True)
 class ExamStatus:
-    """Exam under way, or the newest one."""
+    """Progress of the exam under way, or verdicts of the newest one, as the page and the terminal show it."""
 
     running: Truth
     share: Share
@@ -49,7 +49,7 @@ Corners = Annotated[tuple[tuple[Metres, Metres], ...], UpTo(1000)]
 
 @dataclass(frozen=True, slots=True)
 class WorldView:
-    """Walls and obstacles in metres, with the names of the wire."""
+    """Simulated world from above, as a device receives it: outline, walls and posts in m."""
 
     version: Number
     """Version, which grows when a wall or an obstacle is moved."""
@@ -65,7 +65,7 @@ WORLD = Codec[WorldView]("the robot's world", WorldView)
 
 @dataclass(frozen=True, slots=True)
 class TaskName:
-    """A task that the robot can be taught."""
+    """Task to choose for the next run of a simulated robot, with a sentence on it for the teacher."""
 
     name: Title
     what: Line
@@ -74,7 +74,7 @@ class TaskName:
 
 @dataclass(frozen=True, slots=True)
 class SimulationView:
-    """Simulated world and task, and those to choose from."""
+    """World, task and speed of a simulated robot, and the choices that its teacher has for the next run."""
 
     world: Title
     """World as chosen: `a`, `rooms-7`, a path."""

@@ -50,7 +50,7 @@ class MidState(NamedTuple):
 
 
 class SurpriseState(NamedTuple):
-    """Situation that differs from the learnt expectation of an RLA."""
+    """Newest surprise: a situation after an RLA that differs from the expectation learnt for its end."""
 
     tick: Number
     level: Level
@@ -65,7 +65,7 @@ class SurpriseState(NamedTuple):
 
 
 class HoldState(NamedTuple):
-    """Newest press of a held action."""
+    """Newest press of an action's button, held to correct; its lessons can be undone together."""
 
     teacher: Word
     action: Word
@@ -79,7 +79,7 @@ class HoldState(NamedTuple):
 
 
 class ShownState(NamedTuple):
-    """Newest drive by hand that was not taught yet, as segments of the nearest actions, oldest first."""
+    """Newest drive by hand that can still be taught, cut into segments of the nearest actions."""
 
     teacher: Word
     press_id: Number

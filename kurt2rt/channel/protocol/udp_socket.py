@@ -55,7 +55,7 @@ class Ipv4Socket(socket.socket):
 
 
 def mapped(address: tuple[str, int]) -> tuple[str, int, int, int]:
-    """Return an IPv4 host and port as an address of an IPv6 socket."""
+    """Return an IPv4 host and port as the address that an IPv6 socket has for it (mapped address)."""
     return f"{_MAPPED}{address[0]}", address[1], 0, 0
 
 

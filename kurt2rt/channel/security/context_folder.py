@@ -20,7 +20,7 @@ _UNFINISHED = ".sequence.unborn"
 
 
 class CredentialsError(UserError):
-    """A pairing is missing, damaged, in use by another program, or not allowed."""
+    """Pairing that is missing, damaged, in use by another program, or not allowed."""
 
 
 class ContextFolder:

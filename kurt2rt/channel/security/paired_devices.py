@@ -19,7 +19,7 @@ _Identity = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class PairingChange:
-    """Result of `Teachers.refresh`, by name; a renewed pairing is in both."""
+    """Devices whose pairings `Teachers.refresh` added and removed, by name; a renewed one is in both."""
 
     added: tuple[str, ...]
     removed: tuple[str, ...]
@@ -43,7 +43,7 @@ class _Scan:
 
 
 class Teachers:
-    """All contexts of one `teachers` folder, locked until `close`.
+    """Keys of all paired devices, from one `teachers` folder, which stays locked until `close`.
 
     A pairing that cannot be opened is skipped and reported by `trouble`. Use it from one thread.
     """

@@ -51,7 +51,7 @@ _TOKEN_BYTES = 24  # 32 characters
 
 @dataclass(frozen=True, slots=True)
 class Device:
-    """Device's side of a pairing."""
+    """Device's side of a pairing: the folder of its keys, and the robot's address in it."""
 
     folder: Path
     name: str
@@ -81,7 +81,7 @@ class Pairing:
 
 @dataclass(frozen=True, slots=True)
 class PairingInfo:
-    """Pairing as the robot's side knows it."""
+    """Entry in the list of pairings: a device that the robot accepts, with the times of pairing and use."""
 
     name: str
     made_at: datetime

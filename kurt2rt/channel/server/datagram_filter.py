@@ -20,7 +20,7 @@ from kurt2rt.channel.server.sealed_request import SealedRequest
 
 
 class TokenBucket:
-    """Bucket of up to `capacity` tokens, full at the beginning, refilled by `rate_per_s` tokens a second."""
+    """Rate limit: `capacity` events at once, and `rate_per_s` events a second after that."""
 
     __slots__ = ("_capacity", "_now", "_rate_per_s", "_since_s", "_tokens")
 
@@ -118,7 +118,10 @@ class _Key:
 
 
 class DatagramFilter:
-    """Filter that accepts possible requests at a bearable rate."""
+    """Filter of datagrams before they are decoded: plausible requests pass, at a limited rate.
+
+    Senders that have shown a key have rates of their own, so that a flood of strangers does not shut them out.
+    """
 
     def __init__(
         self,

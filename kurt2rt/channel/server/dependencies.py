@@ -59,7 +59,7 @@ class Copies(Protocol):
 
 
 class TeacherNow(NamedTuple):
-    """Present teacher with phase and session; the next run begins with them."""
+    """Teacher of the present run with phase and session, who teaches on in the next run."""
 
     device: str
     phase: int
@@ -67,7 +67,7 @@ class TeacherNow(NamedTuple):
 
 
 class TaskProgress(Protocol):
-    """Progress of a simulated robot with its task."""
+    """Source of a simulated robot's progress with its task, which the channel shows its teachers."""
 
     @property
     def progress(self) -> float:
@@ -118,7 +118,7 @@ class RunControl(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class ChannelDependencies:
-    """Parts of the service that the channel needs."""
+    """Parts of the service that the channel reads and calls; None for what a robot lacks."""
 
     journal: JournalStatus
     copies: Copies

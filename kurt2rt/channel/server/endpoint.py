@@ -56,7 +56,7 @@ def _why(error: OSError | OverflowError, host: str, port: int) -> str:
 
 
 class Site(Protocol):
-    """Resources of the robot that answer the requests of a context (a site of aiocoap)."""
+    """Answerer of all requests that reach an endpoint (a site of aiocoap); `RobotSite` is one."""
 
     async def render_to_pipe(self, pipe: Any) -> None:
         """Answer one request by adding responses to `pipe` (aiocoap.pipe.Pipe); called in a task of its own."""
@@ -166,7 +166,7 @@ class _Socket(MessageInterfaceUDP6):  # type: ignore[misc]  # Any
 
 
 class Endpoint:
-    """Open port; it closes when this object is collected."""
+    """Open UDP port of the channel, made by `open_endpoint`; it closes when this object is collected."""
 
     def __init__(
         self,

@@ -41,7 +41,10 @@ from simbridge.contracts.world_refusal import WorldRefusal, WorldRefusedError
 
 
 class PendingCommands:
-    """Replies by command id, pending ones included; the oldest settled replies are dropped."""
+    """Replies to commands by command id, so that a repeated command gets the same reply, perhaps later.
+
+    The oldest settled replies are dropped.
+    """
 
     def __init__(self, capacity: int = 1024) -> None:
         self._capacity = capacity
@@ -84,7 +87,7 @@ WORLD_REFUSALS: Mapping[WorldRefusal, RefusalCode] = {
 
 
 def failure(failed: RefusalCode, crashed: RefusalCode, error: Exception) -> Outcome:
-    """Return the outcome of work that failed.
+    """Return the refusal that tells a teacher why work failed, such as a copy of the knowledge.
 
     Args:
         failed: code for an error that the teacher can mend.
@@ -132,7 +135,7 @@ OffTickCommand = (
 
 
 class Upload:
-    """File that is being uploaded; a newer upload replaces it."""
+    """File that a device is uploading in parts, kept in memory; a newer upload replaces it."""
 
     def __init__(self, most_bytes: int = MOST_UPLOAD_BYTES) -> None:
         self._most_bytes = most_bytes
@@ -171,7 +174,10 @@ class Upload:
 
 
 class OffTickRequests:
-    """Handler of the requests that do not go to the next tick; threads do the slow work."""
+    """Handler of requests that no tick carries out, such as copies and the next run.
+
+    Threads do the slow work.
+    """
 
     def __init__(
         self, runtime: Runtime, parts: ChannelDependencies, pending: PendingCommands, tick: Callable[[], int]
@@ -208,7 +214,10 @@ class OffTickRequests:
         return Reply(ReplyStatus.NOT_HERE)
 
     def begin(self, device: str, command_id: str, request: OffTickCommand) -> Reply | None:
-        """Carry out a command; return a refusal, or None if the reply is in the pending commands."""
+        """Carry out a command, or begin it; return a refusal, or None.
+
+        After None its reply is, or will be, in the pending commands.
+        """
         match request:
             case SpeedRequest(times=times):
                 return self._change_speed(device, command_id, times)

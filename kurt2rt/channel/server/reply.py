@@ -10,7 +10,7 @@ from kurt2rt.core.outcome_text import text_of
 
 
 class ReplyStatus(Enum):
-    """End of a request; each member is one CoAP code."""
+    """Result of a request as its sender has to treat it; each member is one CoAP code."""
 
     DONE = "done"
     MALFORMED = "malformed"

@@ -44,7 +44,7 @@ LONGEST_WAIT_S = 3.0
 
 
 class Sender(NamedTuple):
-    """Authenticated sender of a message."""
+    """Authenticated sender of a request, by the key that protected it, and the request's sequence number."""
 
     device: str
     pairing: bytes
@@ -54,7 +54,7 @@ class Sender(NamedTuple):
 
 
 class RequestHandler:
-    """Handler of requests in the robot's own loop, between two ticks."""
+    """Handler of authenticated requests, in the robot's own loop: queues commands, answers queries."""
 
     def __init__(
         self,

@@ -49,7 +49,7 @@ class _Confirmed(TransportTuning):  # type: ignore[misc]
 
 
 class Keys(Protocol):
-    """Robot's side of all pairings."""
+    """Robot's keys of all paired devices, by which aiocoap decrypts a request and finds its sender."""
 
     def find(self, unprotected: Any) -> Any:
         """Return the security context that a message names. Raises KeyError."""
@@ -57,7 +57,7 @@ class Keys(Protocol):
 
 
 class SenderRegistry(Protocol):
-    """Registry of the senders that proved to hold a key."""
+    """Receiver of senders that proved to hold a key, to give them a rate of their own (`Endpoint`)."""
 
     def mark_proven(self, remote: Any) -> None:
         """Note that `remote`, a sender's address, has sent a message that only a key holder can make."""
@@ -97,7 +97,7 @@ class _Observer:
 
 
 class RobotSite:
-    """Answers of the robot (aiocoap's site). One place checks the key, for every path."""
+    """Answers of the robot to each path (aiocoap's site); it checks the key first, then asks the handler."""
 
     def __init__(self, keys: Keys, handler: RequestHandler) -> None:
         self._keys = keys

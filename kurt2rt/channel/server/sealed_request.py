@@ -25,7 +25,7 @@ _OSCORE_VERSION = 1
 
 @dataclass(frozen=True, slots=True)
 class SealedRequest:
-    """Parts of a datagram that its sender's key protects."""
+    """Parts of a datagram from which its OSCORE tag is checked before aiocoap decodes it."""
 
     kid: bytes
     """Key id: the sender id of the device's side."""

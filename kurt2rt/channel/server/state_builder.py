@@ -65,7 +65,7 @@ class StateBuilder:
         self._right_ticks += record.readings.encoder_right_ticks
 
     def pause(self) -> None:
-        """Look at the lateness again with the next state; call it in ticks without an observer."""
+        """Let the next state measure the lateness again; call it in ticks without an observer."""
         self._count = 0
 
     def build(self, record: TickRecord) -> State:

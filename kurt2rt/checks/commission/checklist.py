@@ -24,7 +24,10 @@ WORDS = "wheels up"
 
 
 class WheelsOffGroundStep:
-    """Step of every session: yesterday's block proves nothing."""
+    """Step in which the operator confirms that no wheel touches the ground; repeated in every session.
+
+    Steps that turn the wheels are refused without it.
+    """
 
     name = "lifted"
     title = "Wheels off the ground"

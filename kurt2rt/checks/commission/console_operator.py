@@ -73,7 +73,7 @@ def _descriptor(lines: TextIO) -> int | None:
 
 
 class ConsoleOperator:
-    """Operator (kurt2rt.checks.commission.operator.Operator) with a screen and a keyboard."""
+    """Operator of the commissioning at a terminal: prints lines and questions, reads typed answers."""
 
     def __init__(self, lines: TextIO, console: Console) -> None:
         self._keyboard = Keyboard(lines)

@@ -10,7 +10,7 @@ Field = str | int | float
 
 
 class FaultCode(TextCode):
-    """Fault of the robot, its bus or its settings."""
+    """Code of a fault that a commissioning step found, with the instruction that mends it."""
 
     # Frames on the bus.
     BUS_SILENT = (
@@ -155,7 +155,7 @@ class FaultCode(TextCode):
 
 
 class SkipCode(TextCode):
-    """Reason that a step was not run."""
+    """Code for why a commissioning step was not run, kept in the progress file."""
 
     COMMAND_LINE = ("command line", "as was wished on the command line")
     OPERATOR = ("operator", "as you wished")

@@ -13,7 +13,7 @@ _PERIOD_TOLERANCE = 0.2
 
 
 class IdentityStep:
-    """Step that listens and sends nothing."""
+    """Step that listens to the bus for 2 s: reads the controller's identity, judges its frames."""
 
     name = "identity"
     title = "Who is on the bus?"

@@ -24,7 +24,7 @@ _LEAST_RATIO = 2.5
 
 
 class IrCalibrationError(UserError, ValueError):
-    """Readings that cannot be fitted; `fault` tells the reason."""
+    """Readings at known distances to which no calibration fits; `fault` tells the reason."""
 
     def __init__(self, code: FaultCode, **fields: Field) -> None:
         """Word the fault."""
@@ -33,7 +33,7 @@ class IrCalibrationError(UserError, ValueError):
 
 
 class IrReading(NamedTuple):
-    """Median counts of a sensor with a board at a distance from its face."""
+    """Measurement for the calibration: median counts of a sensor with a board at a distance from its face."""
 
     sensor: str
     distance_m: float
@@ -42,7 +42,7 @@ class IrReading(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class IrLaw:
-    """Calibration between near and far."""
+    """Calibration of the infra-red sensors: counts from distances in m and back."""
 
     numerator_counts_m: float
     offset_m: float
@@ -59,7 +59,7 @@ class IrLaw:
 
 @dataclass(frozen=True, slots=True)
 class IrFit:
-    """Calibration with the residual of each reading."""
+    """Calibration fitted by `fit_law`, with the residual of each reading and the readings left out."""
 
     law: IrLaw
     residuals: tuple[float, ...]

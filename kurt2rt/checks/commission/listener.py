@@ -25,7 +25,7 @@ class EncoderFrame(NamedTuple):
 
 
 class Identity(NamedTuple):
-    """Content of INFO_1 or INFO_2."""
+    """Content of an INFO_1 or INFO_2 frame, by which a controller names itself."""
 
     hardware_id: int
     firmware: int
@@ -34,7 +34,7 @@ class Identity(NamedTuple):
 
 @dataclass(slots=True)
 class FrameStatistics:
-    """Frames collected by the listener; times on the test stand's clock."""
+    """Frames heard in a time span, by which steps judge; times on the test stand's clock."""
 
     arrivals_s: dict[int, list[float]] = field(default_factory=dict)
     """Arrival times of standard data frames by identifier."""
@@ -81,7 +81,7 @@ class FrameStatistics:
 
 
 class Listener:
-    """Decoder of all frames of one CAN interface. It sends nothing."""
+    """Decoder of all frames of the robot's bus, on an interface of its own; it sends nothing."""
 
     def __init__(self, bus: CanBus, codec: Codec) -> None:
         """Take ownership of the interface."""

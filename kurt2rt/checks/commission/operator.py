@@ -9,7 +9,7 @@ LEAVE = "q"
 
 
 class QuestionKind(StrEnum):
-    """Subject of a question to the operator; a script answers by it."""
+    """Subject of a question to the operator, by which a script in place of a person answers."""
 
     BEGIN = "begin"
     """Start of a step."""
@@ -39,7 +39,7 @@ class QuestionKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class AnswerChoice:
-    """Short answer; an empty key is Enter alone."""
+    """Short answer that a question offers: the typed key and its meaning; an empty key is Enter alone."""
 
     key: str
     meaning: str
@@ -47,7 +47,7 @@ class AnswerChoice:
 
 @dataclass(frozen=True, slots=True)
 class OperatorQuestion:
-    """Question or instruction to the operator. LEAVE answers every question."""
+    """Question or instruction of a step to the operator; the answer LEAVE to any of them ends the session."""
 
     about: QuestionKind
     text: str

@@ -14,7 +14,10 @@ from kurt2rt.platform.durable_files import write_durably
 
 
 class LawFound(Settings):
-    """Infra-red calibration fitted to readings at known distances."""
+    """Infra-red calibration that a commissioning found, for the robot's settings file.
+
+    It holds between `near_m` and `far_m`; floor and plateau are the counts beyond both.
+    """
 
     numerator_counts_m: float
     offset_m: float
@@ -26,7 +29,10 @@ class LawFound(Settings):
 
 
 class Findings(Settings):
-    """Measured values; None or absent: not measured, the base settings hold."""
+    """Values that a commissioning measured, for the robot's settings file.
+
+    None or absent: not measured, the base settings hold.
+    """
 
     hardware_id: int | None = None
     firmware: int | None = None
@@ -43,7 +49,7 @@ class Findings(Settings):
 
 
 class StepOutcome(StrEnum):
-    """Outcome of one step of the checklist."""
+    """Outcome of the last run of a commissioning step."""
 
     PASSED = "passed"
     FAILED = "failed"
@@ -51,7 +57,7 @@ class StepOutcome(StrEnum):
 
 
 class StepRecord(Settings):
-    """Result of the last run of a step."""
+    """Result of the last run of a commissioning step, kept in the progress file."""
 
     outcome: StepOutcome
     at: str

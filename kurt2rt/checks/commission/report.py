@@ -13,7 +13,7 @@ _STYLES = {StepOutcome.PASSED: "green", StepOutcome.FAILED: "bold red", StepOutc
 
 
 def passed(progress: Progress, steps: Sequence[CommissionStep]) -> bool:
-    """Return whether every step passed."""
+    """Return whether every step of a commissioning passed, so that the robot is ready."""
     return all(
         step.name in progress.steps and progress.steps[step.name].outcome is StepOutcome.PASSED for step in steps
     )

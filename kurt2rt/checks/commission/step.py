@@ -11,7 +11,7 @@ from kurt2rt.checks.commission.test_stand import TestStand
 
 @dataclass(slots=True)
 class StepResult:
-    """Measurements of a step. It passed if it found no fault."""
+    """Result of a step: measured lines, findings and faults. The step passed if it found no fault."""
 
     findings: Findings
     measured: list[str] = field(default_factory=list)
@@ -24,7 +24,7 @@ class StepResult:
         self.faults.append(StepFault(code, fields))
 
     def note(self, line: str) -> None:
-        """Add a measured line for the end of the step."""
+        """Add a measured line that is shown at the end of the step."""
         self.measured.append(line)
         self.unprinted.append(line)
 
@@ -40,7 +40,7 @@ class StepResult:
 
 
 class CommissionStep(Protocol):
-    """Step of the checklist. `run` starts over at each call."""
+    """Step of the commissioning's checklist, with its texts. `run` starts over at each call."""
 
     name: str
     """Name for --only and --skip."""

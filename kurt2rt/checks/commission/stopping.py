@@ -24,7 +24,10 @@ _FORWARD = WheelSpeeds(TEST_SPEED_M_S, TEST_SPEED_M_S)
 
 
 class StoppingStep:
-    """Step that brakes, then lets the controller's watchdog expire."""
+    """Step that brakes the turning wheels, then stops sending, and measures the time to rest of each.
+
+    The second part checks the watchdog of the controller, which stops the robot if this computer fails.
+    """
 
     name = "stop"
     title = "Emergency stop and the controller's own watchdog"

@@ -77,7 +77,7 @@ def test_stand_settings(
 
 @dataclass(frozen=True, slots=True)
 class TestDrive:
-    """Result of a drive that ended in a brake."""
+    """Frames and times of a drive at the test stand, which ended in a brake."""
 
     heard: FrameStatistics
     """Frames during the drive."""
@@ -94,7 +94,7 @@ class TestDrive:
 
 
 class TestStand:
-    """Loop of the commissioning.
+    """Robot, bus, clock and operator of a commissioning, for its steps: they ask, listen and drive by it.
 
     The robot is opened before its first motion, and braked whenever it need not move.
     """

@@ -7,7 +7,7 @@ from kurt2rt.checks.commission.fault import FaultCode, StepFault
 
 
 class WheelSide(IntEnum):
-    """Side of the robot; its index in a Motion."""
+    """Left or right side of the robot, as the index of its sign in a `Motion`."""
 
     LEFT = 0
     RIGHT = 1
@@ -49,7 +49,10 @@ def single_side(side: WheelSide, sign: int) -> Motion:
 
 
 class WheelTrial(NamedTuple):
-    """Command, the operator's observation and the encoders' motion."""
+    """Motion of one side three times: as ordered, as seen by the operator, as counted by the encoders.
+
+    Differences between them tell swapped, reversed and dead motors and encoders (`wiring_faults`).
+    """
 
     ordered: Motion
     seen: Motion

@@ -15,7 +15,7 @@ _TIMER = "{ticks} ticks of {period_ms:g} ms: median {median_ms:.3f} ms late, wor
 
 
 class CheckStatus(StrEnum):
-    """Suitability of the machine in one respect: ok, a warning, or missing."""
+    """Judgement of one check of `kurt2rt doctor`: ok, a warning, or missing."""
 
     OK = "ok"
     WARNING = "warning"
@@ -23,7 +23,10 @@ class CheckStatus(StrEnum):
 
 
 class FindingCode(StrEnum):
-    """State of the machine in one respect, with its texts; the fields of the finding are in braces."""
+    """Code of what a check of `kurt2rt doctor` found, with its texts and remedy.
+
+    The fields of the finding are in braces.
+    """
 
     subject: str
     found: str

@@ -21,7 +21,7 @@ from kurt2rt.core.learner.learners import LEARNERS, find_learner
 
 
 class KindName(StrEnum):
-    """Kind of plug-ins, on the command line."""
+    """Kind of plug-ins, as `kurt2rt plugin` names it on the command line."""
 
     LEARNERS = "learners"
     POLICIES = "policies"
@@ -40,11 +40,11 @@ KINDS: dict[str, PluginKind] = {
 
 
 class NoPluginError(UserError):
-    """Name or folder that stands for no plug-in."""
+    """Name or folder, given to `kurt2rt plugin`, that stands for no plug-in."""
 
 
 class ListedPart(NamedTuple):
-    """Part of a kind in a list."""
+    """Line of the list of plug-ins: a part of one kind, shipped or from an installed package."""
 
     kind: str
     name: str

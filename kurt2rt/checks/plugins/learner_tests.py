@@ -20,7 +20,7 @@ _TOO_LONG_MS = 20.0
 
 
 class ExampleLessons(NamedTuple):
-    """Made-up lessons of a setting, as a robot would give them, and situations to try decisions in."""
+    """Made-up lessons and situations by which every learner is tested, as a robot would give them."""
 
     situations: NDArray[np.float64]
     """Situations (n, d) of the lessons, in counts."""
@@ -40,7 +40,7 @@ class ExampleLessons(NamedTuple):
 
 
 def made_up(setting: LearnerSetting) -> ExampleLessons:
-    """Return made-up lessons, drawn by the setting's seed."""
+    """Return made-up lessons for a learner of this setting, drawn by its seed."""
     rng = np.random.default_rng(setting.seed)
     # Groups, because lessons of a robot lie together; with noise, so that no two situations are equal.
     centres = rng.uniform(0.0, _FARTHEST_COUNTS, (8, setting.dimensions))

@@ -27,14 +27,14 @@ _SLOW = 0.4
 
 
 class Tick(NamedTuple):
-    """Readings of one tick, and what the guard made of it."""
+    """Readings of one tick of a tested robot, and the guard's answer in it."""
 
     readings: SensorReadings
     result: GuardResult
 
 
 class Drive:
-    """Drive of a simulated robot, tick by tick, after it stood for a second."""
+    """Drive of a simulated robot by its tests, tick by tick, after it stood for a second."""
 
     newest: Tick
     """Newest tick."""
@@ -59,7 +59,7 @@ class Drive:
         return self.newest
 
     def told(self) -> str:
-        """Return what the guard made of the newest tick."""
+        """Return the guard's answer in the newest tick as a sentence, for a test that fails."""
         applied, reasons, _ = self.newest.result
         why = f" ({', '.join(reasons)})" if reasons else ""
         return f"the guard applied {applied.left_m_s:+.2f} and {applied.right_m_s:+.2f} m/s in the newest tick{why}"
@@ -82,7 +82,7 @@ class Drive:
         return self.is_near(before)
 
     def is_near(self, before: Pose) -> bool:
-        """Return whether the robot has not moved since the pose `before`."""
+        """Return whether the robot has not moved since the pose `before`, apart from noise."""
         return math.dist(before, self.pose) < _STANDS_M
 
 

@@ -80,7 +80,10 @@ class NewObstacle(NamedTuple):
 
 
 def features_ahead(definition: SituationDefinition, infrared: InfraredSettings) -> tuple[int, ...]:
-    """Return the indexes of the readings in a situation vector whose sensors look ahead, within 60 degrees."""
+    """Return the indexes of the readings in a situation whose sensors look ahead, within 60 degrees.
+
+    Doubt looks for new obstacles in these readings only.
+    """
     headings = {sensor.name: sensor.heading_deg for sensor in infrared.sensors}
     return tuple(
         index
@@ -90,14 +93,14 @@ def features_ahead(definition: SituationDefinition, infrared: InfraredSettings) 
 
 
 def actions_ahead(repertoire: Mapping[str, Behaviour]) -> frozenset[str]:
-    """Return the names of the actions that move the robot forward by their own set points."""
+    """Return the names of the actions that drive forward, which a new obstacle ahead makes doubtful."""
     return frozenset(
         name for name, action in repertoire.items() if isinstance(action, DrivesOn) and action.forward_m_s > 0.0
     )
 
 
 def set_points(repertoire: Mapping[str, Behaviour]) -> dict[str, WheelSpeeds]:
-    """Return the wheel speeds in m/s of the actions that have fixed ones, by name."""
+    """Return the wheel speeds in m/s, by name, of the actions whose way can be predicted."""
     return {name: action.wheel_speeds for name, action in repertoire.items() if isinstance(action, HasSetPoints)}
 
 
@@ -226,7 +229,7 @@ class DoubtMeter:
 
 
 class DoubtWatch:
-    """Doubt of a level: it begins at the threshold and ends below a fraction of it."""
+    """Decision whether a level stands for doubt: from the threshold on, until a fraction of it."""
 
     def __init__(self, meter: DoubtMeter) -> None:
         """Begin without doubt."""

@@ -7,7 +7,10 @@ from kurt2rt.core.rla.rla import Rla
 
 
 class EpsilonGreedy:
-    """Epsilon-greedy choice by value; it holds until its group was not nearest for `hold_ticks` or is punished."""
+    """Choice among RLAs of one condition by their values, at random with a probability of epsilon.
+
+    A choice holds until its group was not nearest for `hold_ticks` or is punished.
+    """
 
     def __init__(self, value: Callable[[int], float], *, epsilon: float, hold_ticks: int, seed: int) -> None:
         """`value` returns the value of an RLA by its id; `epsilon` is the probability of a random choice, 0 to 1."""

@@ -6,7 +6,7 @@ from hal.robot import SensorReadings, WheelSpeeds
 
 
 class HeldAction:
-    """Driving behaviour of a repertoire and the number of ticks it has driven."""
+    """Action that drives for a level; no other one replaces it before its minimum time is over."""
 
     def __init__(self, repertoire: Repertoire, minimum_ticks: int) -> None:
         self._repertoire = repertoire

@@ -40,7 +40,7 @@ class ContactSettings(Settings):
 
 
 class Contact(NamedTuple):
-    """Remembered obstacle that an action would meet."""
+    """Remembered obstacle that the robot's outline would meet if an action drove on."""
 
     within_s: float
     """Time until the outline meets the obstacle, in steps of 0.1 s."""

@@ -10,7 +10,10 @@ from kurt2rt.core.perception.perception import Situation
 
 
 class PolicyLevel:
-    """Level that drives by a policy, with the same minimum time per action as a taught level."""
+    """Level that drives by the teacher's own policy, for the drives that exams are compared with.
+
+    Its actions have the same minimum time as those of a taught level.
+    """
 
     def __init__(
         self,

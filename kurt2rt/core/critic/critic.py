@@ -13,7 +13,7 @@ from kurt2rt.core.rla.rla_system import RlaSystem
 
 
 class Opinion(NamedTuple):
-    """Critic's opinion of an appraisal situation."""
+    """Critic's appraisal of one tick, given by the nearest appraisal RLA."""
 
     value: int
     """-1 bad, 0 neutral, +1 good; 0 for an unknown situation."""
@@ -93,7 +93,7 @@ class Critic:
 
 
 class CriticState(StrEnum):
-    """Use that is made of the critic's opinions in this phase."""
+    """Use that the robot makes of the critic's opinions now; the page shows it."""
 
     LISTENS = "listens"
     """None: before phase 5, or while the critic is not trusted."""

@@ -71,7 +71,7 @@ NAMES = tuple(_ALWAYS)
 
 
 class AppraisalSettings(Settings):
-    """Signal that the critic can give: an action of its RLAs."""
+    """Opinion that the critic can be taught and then signals, such as "bad" of value -1."""
 
     name: Name
     value: Annotated[int, Field(ge=-1, le=1)]
@@ -111,7 +111,7 @@ class SpunSettings(Settings):
 
 
 class AppraisalPerceptionSettings(Settings):
-    """Settings of the appraisal features: sensors, distances and times."""
+    """Settings of the features that the critic judges by: sensors of both sides, distances and times."""
 
     sensors: SideSensors | None = None
     """Sensors of each side by name; None: by `sectors`."""
@@ -178,7 +178,7 @@ class CriticLearningSettings(Settings):
 
 
 class AgreementSettings(Settings):
-    """Conditions for trusting the critic."""
+    """Agreement of critic and teacher from which on the critic is trusted to act, and how it is counted."""
 
     bound: Share
     """Least agreement with the teacher at which the critic may act."""
@@ -197,7 +197,7 @@ class AgreementSettings(Settings):
 
 
 class SignalEverySettings(Settings):
-    """Shortest time between two signals of one value."""
+    """Shortest time in s between two signals of the critic of one value, -1 (`bad`) or +1 (`good`)."""
 
     bad: Seconds
     good: Seconds
@@ -215,7 +215,7 @@ class ActivationSettings(Settings):
 
 
 class RollbackSettings(Settings):
-    """Settings of the rollback to the best knowledge."""
+    """Settings of the rollback: it undoes the critic's lessons if driving gets worse (`RollbackMonitor`)."""
 
     window_s: Seconds
     """Driving time of one scored window."""

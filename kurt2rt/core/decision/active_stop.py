@@ -7,7 +7,7 @@ from kurt2rt.core.message_fields import Line
 
 
 class StopReason(TextCode):
-    """Code for why the robot stands until a resume."""
+    """Code for why the robot stands until a teacher resumes, with its text."""
 
     SAID_STOP = ("said stop", "{name} said stop")
     """A teacher gave a stop."""

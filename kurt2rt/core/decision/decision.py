@@ -49,7 +49,7 @@ class GoalStatus(StrEnum):
 
 
 class PlanStep(NamedTuple):
-    """Goal, status and next behaviours of one tick."""
+    """State of the drive to a goal in one tick: goal, status, and the behaviours planned to lead there."""
 
     goal: str
     """Goal in words."""
@@ -65,7 +65,7 @@ class PlanStep(NamedTuple):
 
 
 class DecisionCause(StrEnum):
-    """Code for why a decision sets these wheel speeds."""
+    """Code for why a decision sets these wheel speeds: what drives, or why the robot stands."""
 
     RLA = "rla"
     """The situation lies inside the radius of the nearest RLA, whose action drives."""
@@ -108,7 +108,7 @@ BY_KNOWLEDGE = BY_RLA | {DecisionCause.LEARNER}
 
 
 class MidDecision(NamedTuple):
-    """Command of the mid level in one tick."""
+    """Mid level's part of a decision: the behaviour that the basic level is to drive in this tick."""
 
     behaviour: str
     """Active behaviour of the basic level; while the mid level asks, the last one."""
@@ -183,7 +183,7 @@ def stopped(decision: Decision, cause: DecisionCause | None) -> Decision:
 
 
 class Level(Protocol):
-    """Layer that answers each situation with a decision."""
+    """Layer of the mind that decides in each tick, such as the taught basic level or a reference policy."""
 
     def decide(self, situation: Situation, readings: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:
         """Return the decision of this tick; with a blocking cause, one at standstill.
@@ -198,4 +198,4 @@ class UnknownActionError(UserError, ValueError):
 
 
 class UnknownBehaviourError(UserError, ValueError):
-    """Knowledge names a taught behaviour that the task lacks."""
+    """Knowledge with an RLA of a taught behaviour that the task lacks, so that it cannot be used."""

@@ -8,7 +8,7 @@ from kurt2rt.core.decision.decision import GoalStatus
 
 @dataclass(frozen=True, slots=True)
 class NamedGoal:
-    """Situation that a teacher has named, such as "door"."""
+    """Goal given by the name of a situation, such as "door", which a teacher named before."""
 
     name: str
 
@@ -20,7 +20,7 @@ class NamedGoal:
 
 @dataclass(frozen=True, slots=True)
 class RlaGoal:
-    """Condition of a mid-level RLA."""
+    """Goal given by an RLA: the mid-level situation that is its condition."""
 
     rla_id: int
 

@@ -23,7 +23,7 @@ from kurt2rt.core.rla.statistics import Expectation, pack
 
 
 class End(NamedTuple):
-    """End of an RLA: another one took over."""
+    """End of an RLA's drive, at which `follow_up` took over; the expectations learn from its situation."""
 
     rla_id: int
     follow_up: int
@@ -141,7 +141,10 @@ class Expectations:
 
 
 def affected_rla(event: TeachingEvent) -> int | None:
-    """Return the id of the RLA whose action an event creates, changes or ends; None for other events."""
+    """Return the id of the RLA whose action an event creates, changes or ends; None for other events.
+
+    Its expectation and counted transitions are not valid any more.
+    """
     match event:
         case RlaCreated(rla):
             return rla.rla_id

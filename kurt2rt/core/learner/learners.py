@@ -32,7 +32,7 @@ LEARNERS = PluginKind(
 
 
 class NoLearnerError(UserError):
-    """Name that leads to no learner."""
+    """Name or `module:Name` that leads to no learner, or to one whose package is missing."""
 
 
 def learner_names() -> tuple[str, ...]:

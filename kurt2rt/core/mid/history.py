@@ -21,7 +21,10 @@ _WORDS = {_NONE: "", **{_SYMBOLS[quarters]: name for quarters, name in NAMES.ite
 
 
 class HistorySettings(MidSituationSettings):
-    """Settings of a history of symbols; equal ones in a row count too."""
+    """Settings of mid-level situations that are the turns at the last junctions, a symbol each.
+
+    Equal symbols in a row count too.
+    """
 
     length: Annotated[int, Field(ge=1, le=100)]
     """Number of symbols."""
@@ -50,7 +53,7 @@ class HistorySettings(MidSituationSettings):
 
 
 class SymbolHistory:
-    """Mid-level situation of the last symbols, newest first; 0 in unused places."""
+    """Mid-level situation of the turns at the last junctions as symbols, newest first; 0 in unused places."""
 
     def __init__(self, settings: HistorySettings, detector: JunctionDetector) -> None:
         self.features = settings.features

@@ -20,7 +20,7 @@ _TURNED_BACK_RAD = 1.5 * _QUARTER_RAD
 
 
 class JunctionDetectorSettings(Settings):
-    """Thresholds of streets and junctions; distances are sensor readings."""
+    """Thresholds by which the mid level detects junctions; distances are sensor readings or driven ones."""
 
     left: Sensors
     """Left sensors from front to back."""

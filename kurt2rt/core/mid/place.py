@@ -28,7 +28,7 @@ KnownPlace = Callable[[NDArray[np.float64]], Condition | None]
 
 
 class PlaceSettings(MidSituationSettings):
-    """Settings of a place by dead reckoning."""
+    """Settings of mid-level situations that are places: the dead-reckoned pose, in m."""
 
     heading_m: Annotated[float, Field(ge=0, le=100)]
     """Half the distance of two opposite headings at one point."""

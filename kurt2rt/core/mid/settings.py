@@ -19,7 +19,7 @@ Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class MidLearningSettings(Settings):
-    """Settings of matching and lessons of the mid level."""
+    """Settings by which the mid level matches situations to RLAs and places lessons."""
 
     radius: Annotated[float, Field(ge=0, le=100_000)]
     """Confidence radius R; of histories the number of different places (paper: 6 of 12). 0: equal situations only."""
@@ -28,7 +28,7 @@ class MidLearningSettings(Settings):
 
 
 class MidSettings(Settings):
-    """Settings of a mid level."""
+    """Schema of a mid level's file: detection of junctions, its situations, and how it learns."""
 
     name: Name
     junctions: JunctionDetectorSettings

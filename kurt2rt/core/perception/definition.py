@@ -19,7 +19,7 @@ Heading = Literal["front", "left", "right", "rear"]
 
 
 class Reading(Settings):
-    """Raw count of one sensor."""
+    """Feature that is the count of one infra-red sensor, as a situation's file defines it."""
 
     kind: Literal["reading"]
     sensor: str

@@ -118,7 +118,7 @@ class History:
 
 
 class Perception:
-    """Converter from SensorReadings to Situation (paper, section VI.B.1)."""
+    """Source of each tick's situation: recent features and their averages over time (paper, VI.B.1)."""
 
     def __init__(self, definition: SituationDefinition, sensors: tuple[str, ...]) -> None:
         self.definition = definition

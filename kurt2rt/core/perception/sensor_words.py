@@ -49,7 +49,7 @@ def infrared_law(infrared: InfraredSettings) -> InfraredLaw:
 
 
 class SensorWords:
-    """Texts for the features of a situation, by their names in the definition."""
+    """Words for the features of a situation, such as `front left: 13 cm`, in questions and explanations."""
 
     def __init__(self, labels: Mapping[str, str], law: InfraredLaw | None) -> None:
         """`labels`: sensor name -> position such as `front left`; `law`: None if unknown."""
@@ -111,7 +111,7 @@ NO_WORDS = SensorWords({}, None)
 
 
 def words_for(infrared: InfraredSettings) -> SensorWords:
-    """Return the texts for a robot's sensors."""
+    """Return the words for the features of a robot's situations, by the places and the law of its sensors."""
     return SensorWords({each.name: each.label for each in infrared.sensors}, infrared_law(infrared))
 
 

@@ -25,7 +25,7 @@ _STANDING = {
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Edges from the present place to the goal, in driving order."""
+    """Way from the present place to the goal: edges of the topological map in driving order."""
 
     edges: tuple[Edge, ...]
 
@@ -88,7 +88,7 @@ def _cheapest_edges(topological_map: TopologicalMap, start: int) -> tuple[dict[i
 
 
 class GoalPursuit:
-    """Goal and plan, changed at junctions and by commands.
+    """Goal of the `Navigator` and the plan that leads there, changed at junctions and by commands.
 
     Planning is spread over ticks and counted in RLAs and places, not in time, so that a replay is equal.
     """

@@ -25,7 +25,10 @@ _PLACE_OF = re.compile(r"RLA ([1-9][0-9]{0,8})")
 
 
 class Navigator:
-    """Tie breaker of the mid level while there is a goal (kurt2rt.core.mid.mid_level.TieBreaker)."""
+    """Planner of the way to a goal: chooses, among RLAs of one condition, the one that leads there.
+
+    The mid level asks it as its tie breaker (kurt2rt.core.mid.mid_level.TieBreaker).
+    """
 
     def __init__(
         self,

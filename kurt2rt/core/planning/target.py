@@ -23,7 +23,7 @@ GroupAt = Callable[[Vector], tuple[Rla, ...]]
 
 
 class Target(Protocol):
-    """Predicate on situations: whether the goal is reached."""
+    """Goal of the navigator as a test of mid-level situations: whether the robot is there."""
 
     def matches(self, situation: Vector) -> bool:
         """Return whether a situation (d,) reaches the goal; False for a lost robot (NaN)."""
@@ -55,7 +55,7 @@ class NearTarget:
 
 
 class FeatureTarget:
-    """Target: situations with some features near given values."""
+    """Goal that names some features, such as a position; situations near it in all of them reach it."""
 
     def __init__(self, wanted: Mapping[int, float], tolerance: float) -> None:
         """`wanted`: index of the feature -> value; `tolerance`: in the unit of the features, such as m."""

@@ -22,7 +22,7 @@ _RLAS_PER_PIECE = 8
 
 
 class Forecast(Protocol):
-    """Expectation of one RLA, as far as a map needs it."""
+    """Expectation of one RLA (kurt2rt.core.rla.statistics.Expectation), as far as a map needs it."""
 
     @property
     def mean(self) -> Vector:
@@ -37,7 +37,7 @@ class Forecast(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Mid-level situation and the RLAs on it."""
+    """Node of the topological map: a mid-level situation, and the RLAs that are taught there."""
 
     place_id: int
     """Id of its oldest RLA; of an untaught place the negative id of the RLA that leads there."""
@@ -47,7 +47,7 @@ class Place:
 
 
 class Edge(NamedTuple):
-    """Edge from one place to another."""
+    """Edge of the topological map: an RLA's drive from its own place to the place where it ends."""
 
     rla_id: int
     action: str

@@ -13,7 +13,10 @@ _LEARNER = DecisionCause.LEARNER
 
 
 class DecisionHistory:
-    """Situations, decisions and opinions of the last `capacity` ticks, in constant memory."""
+    """Memory of the last `capacity` ticks, about which teachers reward, correct and appraise.
+
+    It holds situations, decisions and opinions, in constant memory.
+    """
 
     def __init__(self, dimensions: int, capacity: int = 1000) -> None:
         self._capacity = capacity

@@ -15,9 +15,9 @@ _LEARNER = int(LessonCause.LEARNER)
 
 
 class LoggedDecisions(DecisionHistory):
-    """Decisions of the ticks up to `newest`, read from a log; no tick is missed, and no tick has an opinion.
+    """Decision history of a compiled lesson, read from its log up to the tick `newest`.
 
-    Its owner sets `newest`. A copy shares the log, so it takes no time.
+    Its owner sets `newest`. No tick is missed, and none has an opinion. A copy shares the log, so it takes no time.
     """
 
     def __init__(

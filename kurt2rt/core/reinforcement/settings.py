@@ -12,7 +12,7 @@ _Value = Annotated[float, Field(ge=-1, le=1)]
 
 
 class ValueSettings(Settings):
-    """First and highest value, and thresholds of repair."""
+    """Settings of the values that rewards change: first, highest, and thresholds of repair."""
 
     first_value: _Value
     """Value of a newly taught action."""
@@ -46,7 +46,7 @@ class AutonomousValues(ValueSettings):
 
 
 class ReinforcementSettings(Settings):
-    """Settings of reinforcement; the defaults were found in simulation."""
+    """Settings of learning from rewards in phases 3 to 5; the defaults were found in simulation."""
 
     trace_s: _Seconds = 0.7
     """Time constant of the eligibility trace of a teacher's reward."""

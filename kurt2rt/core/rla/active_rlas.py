@@ -37,7 +37,7 @@ class Match(NamedTuple):
 
 
 class CandidateIndex:
-    """Ids of competing RLAs, in the row order of the index of their conditions."""
+    """Searchable conditions of the RLAs that compete at one level for one behaviour, with their ids."""
 
     def __init__(self, space: Space) -> None:
         self.weights = np.ones(space.dimensions) if space.weights is None else space.weights
@@ -231,7 +231,7 @@ class ActiveRlas:
 
 
 class CompetitorGroups:
-    """Active RLAs, grouped by level, behaviour and equal condition."""
+    """Index of active RLAs that compete: equal level, behaviour and condition, but different actions."""
 
     def __init__(self) -> None:
         self._members: dict[tuple[str, str, Condition], tuple[Rla, ...]] = {}

@@ -76,7 +76,7 @@ Metric = Literal["euclidean", "hamming"]
 
 
 class Space(NamedTuple):
-    """Dimensions, radius, weights and metric of the distances of one level."""
+    """Dimensions, radius, weights and metric by which one level measures distances between situations."""
 
     dimensions: int
     radius: float
@@ -88,7 +88,7 @@ class Space(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class LevelFeatures:
-    """Names and fingerprint of the features of one level."""
+    """Features of one level's conditions, by which a knowledge file is checked against a task."""
 
     feature_hash: str
     """Fingerprint of all settings that define these features."""

@@ -22,7 +22,7 @@ class RlaCreated:
 
 @dataclass(frozen=True, slots=True)
 class ActionReplaced:
-    """Correction: an RLA gets another action (phase 2)."""
+    """Teaching event of a correction: an RLA gets another action (phase 2)."""
 
     rla_id: int
     action: str
@@ -42,7 +42,7 @@ class ActionWithdrawn:
 
 @dataclass(frozen=True, slots=True)
 class RlaDeleted:
-    """Deletion of an RLA (phase 2)."""
+    """Teaching event that deletes an RLA, by a teacher or by the robot's own repair."""
 
     rla_id: int
     origin: Origin
@@ -104,7 +104,7 @@ class LessonUndone:
 
 @dataclass(frozen=True, slots=True)
 class LessonRedone:
-    """Redo of one lesson that was undone."""
+    """Teaching event that lets a lesson stand again which an undo had taken back."""
 
     lesson: str
     """Command id of the lesson."""
@@ -113,7 +113,7 @@ class LessonRedone:
 
 @dataclass(frozen=True, slots=True)
 class SessionBegun:
-    """Beginning of a teaching session; changes no RLA."""
+    """Teaching event at the beginning of a named session, whose time counts as teaching; changes no RLA."""
 
     name: str
     origin: Origin
@@ -121,7 +121,7 @@ class SessionBegun:
 
 @dataclass(frozen=True, slots=True)
 class SessionEnded:
-    """End of a teaching session; changes no RLA."""
+    """Teaching event at the end of a session, which adds to the time of teaching; changes no RLA."""
 
     lasted_ticks: int
     """Duration in ticks, waits included."""

@@ -88,7 +88,7 @@ def rla_id_of(lesson: RlaLesson) -> int:
 
 
 def lesson_stack(lesson: Lesson) -> LessonStack:
-    """Return the key of the stack of a lesson: an RLA's id, or level and name of a named situation."""
+    """Return the key of a lesson's stack in a history: an RLA's id, or level and name of a situation."""
     return (lesson.level, lesson.name) if isinstance(lesson, SituationNamed) else rla_id_of(lesson)
 
 

@@ -11,7 +11,7 @@ pairwise_sum = np.add.reduce
 
 
 class NearestCondition(NamedTuple):
-    """Nearest condition and the runner-up."""
+    """Result of a search: positions of the nearest condition and the runner-up, and their distances."""
 
     position: int
     distance: float

@@ -39,7 +39,7 @@ CRITIC = "critic"
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Teacher, command, phase and tick of a teaching event."""
+    """Origin of a teaching event: its command, teacher, phase and tick."""
 
     command_id: str
     """Id of the teacher's command; a repeated id counts once."""

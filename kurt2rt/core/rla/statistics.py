@@ -100,7 +100,7 @@ class Appraisal(NamedTuple):
 
 
 class RewardCounts:
-    """Appraisals of all RLAs, by id."""
+    """Numbers of rewards of +1 and -1 that each RLA got; undone rewards are subtracted."""
 
     def __init__(self) -> None:
         self._counts: Counter[tuple[int, bool]] = Counter()

@@ -63,7 +63,10 @@ _TAUGHT_PHASES = (Phase.SUPERVISED, Phase.CORRECTIONS)
 
 
 class CommandHandler:
-    """Handler of lessons, rewards, appraisals, undo, sessions, phases, goals, stop and resume."""
+    """Handler of the teachers' commands, which the tick takes from the inbox and hands over one by one.
+
+    It carries out lessons, rewards, appraisals, undo, sessions, phases, goals, stop and resume.
+    """
 
     def __init__(
         self,
@@ -206,7 +209,7 @@ class CommandHandler:
         return events
 
     def on_decision(self, tick: int, *, asks: bool) -> None:
-        """Note whether the basic level asked its teacher in a tick."""
+        """Note whether the basic level asked its teacher in a tick, to measure the teacher's delay."""
         if asks or self.delay.asked_tick is not None:
             self.delay.on_decision(tick, asks=asks, present=self.authority.is_present(tick))
 

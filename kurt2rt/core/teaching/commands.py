@@ -88,7 +88,7 @@ Stream = Watch | Drive | HoldAction
 
 @dataclass(frozen=True, slots=True)
 class RunBehaviour(SingleCommand):
-    """Run one action of the repertoire for `ticks` ticks instead of the RLAs; the robot stands afterwards."""
+    """Command that runs one action of the repertoire for `ticks` ticks instead of the RLAs, then stands."""
 
     path: ClassVar[str] = "/behaviour"
     moves: ClassVar[bool] = True
@@ -100,7 +100,7 @@ class RunBehaviour(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class Teach(SingleCommand):
-    """Answer a situation by a new RLA with this action (phase 1)."""
+    """Command that answers a situation in which the robot asks: a new RLA with this action (phase 1)."""
 
     path: ClassVar[str] = "/answer"
     action: Name
@@ -139,7 +139,7 @@ class Correct(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class TeachShown(SingleCommand):
-    """Teach what was driven by hand: segments of the newest demonstration, which its teacher has seen."""
+    """Command that teaches segments of the newest drive by hand, which its teacher has seen."""
 
     path: ClassVar[str] = "/shown"
     press_id: Number
@@ -150,7 +150,7 @@ class TeachShown(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class ReplaceAction(SingleCommand):
-    """Give one RLA another action (phase 2)."""
+    """Command that gives the RLA of an id another action (phase 2)."""
 
     path: ClassVar[str] = "/replace"
     rla_id: Number
@@ -159,7 +159,7 @@ class ReplaceAction(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class DeleteRla(SingleCommand):
-    """Delete one RLA while the robot is running (phase 2)."""
+    """Command that deletes the RLA of an id while the robot is running (phase 2)."""
 
     path: ClassVar[str] = "/delete"
     rla_id: Number
@@ -184,7 +184,7 @@ class Reward(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class Appraise(SingleCommand):
-    """Teach the critic the value of a situation, independent of the action (phase 4)."""
+    """Command that teaches the critic the value of a situation, independent of the action (phase 4)."""
 
     path: ClassVar[str] = "/appraise"
     appraisal: Name
@@ -198,7 +198,7 @@ class Appraise(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class Undo(SingleCommand):
-    """Undo a lesson: its RLA, name or reward is as before."""
+    """Command that undoes a lesson, or all of a hold: its RLA, name or reward is as before."""
 
     path: ClassVar[str] = "/undo"
     lesson: Name | None = None
@@ -207,7 +207,7 @@ class Undo(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class Pursue(SingleCommand):
-    """Make another taught behaviour active: only its RLAs compete, and lessons are about it.
+    """Command that makes another taught behaviour active: only its RLAs compete, and lessons are about it.
 
     It overrides a mid level until the next junction has been passed.
     """
@@ -221,7 +221,7 @@ class Pursue(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class NameSituation(SingleCommand):
-    """Give a situation of the mid level a name, such as "door", so that it can be a goal."""
+    """Command that gives a situation of the mid level a name, such as "door", so that it can be a goal."""
 
     path: ClassVar[str] = "/name"
     name: Name
@@ -232,7 +232,7 @@ class NameSituation(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class Seek(SingleCommand):
-    """Go to a goal on taught ways, and stand there."""
+    """Command to drive to a goal on taught ways, and stand there."""
 
     path: ClassVar[str] = "/seek"
     moves: ClassVar[bool] = True
@@ -243,7 +243,7 @@ class Seek(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class StopSeeking(SingleCommand):
-    """Drop the goal; the mid level commands by its RLAs."""
+    """Command that drops the goal; the mid level commands by its RLAs again."""
 
     path: ClassVar[str] = "/seek/stop"
     moves: ClassVar[bool] = True
@@ -253,7 +253,7 @@ class StopSeeking(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class BeAt(SingleCommand):
-    """Set the location after the robot was put down at a named place."""
+    """Command that tells a robot that was put down at a named place where it is."""
 
     path: ClassVar[str] = "/here"
     name: Name
@@ -263,7 +263,7 @@ class BeAt(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class SetPhase(SingleCommand):
-    """Set the training phase, 1 to 5."""
+    """Command that sets the training phase, 1 to 5; a stop after `seen_tick` refuses phase 5."""
 
     path: ClassVar[str] = "/phase"
     moves: ClassVar[bool] = True
@@ -275,7 +275,7 @@ class SetPhase(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class SetLessonSpeed(SingleCommand):
-    """Set the speed at which actions drive while a teacher teaches them (slow lessons)."""
+    """Command that sets the speed at which actions drive while a teacher teaches them (slow lessons)."""
 
     path: ClassVar[str] = "/lesson/speed"
     percent: Annotated[int, Int(SLOWEST_PERCENT, 100)]
@@ -284,7 +284,7 @@ class SetLessonSpeed(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class BeginSession(SingleCommand):
-    """Begin a named session; the clock of its teaching time starts."""
+    """Command that begins a named session; the clock of its teaching time starts."""
 
     path: ClassVar[str] = "/session/begin"
     name: Name
@@ -292,14 +292,17 @@ class BeginSession(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class EndSession(SingleCommand):
-    """End the session and its teaching time; the robot stands."""
+    """Command that ends the session and its teaching time; the robot stands."""
 
     path: ClassVar[str] = "/session/end"
 
 
 @dataclass(frozen=True, slots=True)
 class Take(SingleCommand):
-    """Take control authority, also from another teacher; refused while that one drives by hand."""
+    """Command that gives its teacher control authority, also from another teacher.
+
+    It is refused while that one drives by hand.
+    """
 
     path: ClassVar[str] = "/take"
     moves: ClassVar[bool] = True
@@ -307,7 +310,7 @@ class Take(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class HandOver(SingleCommand):
-    """Give up control authority, to another teacher or to anyone."""
+    """Command that gives control authority up, to another teacher or to anyone."""
 
     path: ClassVar[str] = "/release"
     to: Name | None = None
@@ -316,7 +319,7 @@ class HandOver(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class Stop(SingleCommand):
-    """Stand until `Resume`. Every paired device may send it at any time, also one that does not teach.
+    """Command to stand until `Resume`; every paired device may send it, also one that does not teach.
 
     The tick after its arrival brakes. Commands that were given on a state before it are refused.
     """
@@ -329,7 +332,7 @@ class Stop(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class Resume(SingleCommand):
-    """Drive again after `Stop`, or after the guard latched an emergency stop: GO on the page, `go` in a terminal.
+    """Command to drive again after `Stop`, or after the guard latched: GO on the page, `go` in a terminal.
 
     It is refused if the robot was stopped after the state that its teacher saw (`seen_tick`). The robot still stands
     if it has another reason, such as silent sensors; the answer then names it.

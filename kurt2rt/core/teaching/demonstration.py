@@ -38,7 +38,7 @@ _MATCHES_PER_TICK = 4
 
 
 class Segment(NamedTuple):
-    """Part of a demonstration in which one action of the repertoire is nearest."""
+    """Ticks of a drive by hand in a row to which the same action of the repertoire is nearest."""
 
     action: str
     from_tick: int

@@ -11,7 +11,7 @@ LONGEST_NAME = 64
 
 
 class GoalCommands:
-    """Handler of goal commands, which the navigator carries out."""
+    """Part of the command handler for goals: names situations, and gives goals to the navigator."""
 
     def __init__(self, navigator: Navigator, lessons: MidLessons) -> None:
         self._navigator = navigator

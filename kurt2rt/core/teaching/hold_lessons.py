@@ -25,7 +25,7 @@ was right 0.05 to 0.15 s before or after their situation (docs/notebook.md).
 
 @dataclass(slots=True)
 class Hold:
-    """A press of a held action, and its lessons so far."""
+    """Press by which a teacher holds an action to correct the robot, and its lessons so far."""
 
     teacher: str
     press_id: int

@@ -35,7 +35,7 @@ Input = Command | SystemEvent
 
 
 class InboxFullError(RuntimeError):
-    """The inbox is full; the command was not queued."""
+    """Command that was not queued, because the inbox of the next tick is full."""
 
 
 class TeacherInbox:

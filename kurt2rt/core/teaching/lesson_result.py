@@ -13,7 +13,7 @@ from kurt2rt.core.rla.rla_system import RlaSystem
 
 
 class LessonResult(NamedTuple):
-    """Outcome of a lesson and the event that makes it."""
+    """Outcome of a command for its teacher, and the events by which it changes the knowledge."""
 
     outcome: Outcome
     event: TeachingEvent | None = None
@@ -36,7 +36,7 @@ def rla_outcome(code: ResultCode | RefusalCode, rla: Rla, **fields: Field) -> Ou
 
 
 class LessonContext(NamedTuple):
-    """Situation that a teacher means, its level, and the RLA that drove there."""
+    """Situation that a lesson is about, with its level and behaviour, and the RLA that answered there."""
 
     vector: NDArray[np.float64]
     """Situation of the level, shape (d,)."""

@@ -39,7 +39,7 @@ class _GoalLike(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class GoalField:
-    """Goal of a plan: a name, the number of an RLA, or features with a tolerance."""
+    """Check of a goal: the name of a situation, the number of an RLA, or features with a tolerance."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         """Return the schema."""
@@ -61,7 +61,7 @@ class GoalField:
 
 
 def plain(value: Any) -> Any:
-    """Return a goal as its one field, or as the list of its fields; other values as they are."""
+    """Return a goal as it is sent: its one field, or the list of its fields; other values as they are."""
     match value:
         case NamedGoal(name=name):
             return name

@@ -16,7 +16,7 @@ from kurt2rt.core.teaching.lesson_result import LessonContext
 
 
 class MidSnapshot(NamedTuple):
-    """Situation and decision of the mid level, equal for many ticks."""
+    """Situation and decision of the mid level, which stay equal from junction to junction."""
 
     vector: NDArray[np.float64]
     """Mid-level situation, shape (d,)."""

@@ -7,7 +7,10 @@ WINDOW_S = 60
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """The last minute of a run; in its first minute the time since its start."""
+    """Progress of teaching in the last minute of a run: time driven by RLAs, and questions.
+
+    In the first minute it covers the time since the start.
+    """
 
     seconds: int
     """Number of counted seconds, including the current one, 0 to 60."""

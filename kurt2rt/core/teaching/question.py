@@ -16,7 +16,7 @@ from kurt2rt.core.rla.rla import ASK, MID, rla_title
 
 
 class FeatureDifference(NamedTuple):
-    """Feature in which the situation differs from the nearest RLA's condition."""
+    """Feature by which a question explains itself: its value here, and in the nearest RLA's condition."""
 
     name: Word
     here: Finite
@@ -79,7 +79,7 @@ class Question:
 
 @dataclass(frozen=True, slots=True)
 class MidQuestion:
-    """Question of the mid level: which taught behaviour to follow."""
+    """Question of the mid level to the teacher: which taught behaviour to follow from here."""
 
     nearest_rla: int | None
     """None before the first lesson of the mid level."""

@@ -10,7 +10,7 @@ _KNOWN_STOPS = 32
 
 
 class StopRecord:
-    """State of the stop that lasts until a resume."""
+    """Active stop with the teachers who gave it, and the rules that decide which command may lift it."""
 
     def __init__(self) -> None:
         self.active: ActiveStop | None = None

@@ -45,7 +45,7 @@ _APART_TICKS = 300
 
 
 class DriveLog(Settings):
-    """Ticks of one drive; all arrays have shape (n,)."""
+    """Log of one drive of n ticks: doubt, distance, and what went wrong; all arrays have shape (n,)."""
 
     world: str
     doubt: StoredScores
@@ -68,7 +68,7 @@ class DriveLog(Settings):
 
 @dataclass(frozen=True, slots=True)
 class ScoreResult:
-    """Quality of a score at one threshold."""
+    """Quality of a score, doubt or distance, as a warning before wrong actions and collisions."""
 
     auc: float
     """Probability that a wrong tick scores higher than a right one; NaN without wrong ticks."""
@@ -82,7 +82,10 @@ class ScoreResult:
 
 
 def wrong_ticks(log: DriveLog) -> Flags:
-    """Return the ticks (n,) with a lasting missed turn away, or with a collision within 2 s."""
+    """Return the ticks (n,) in which a robot does wrong, before which a score should have warned.
+
+    These are lasting missed turns away, and the 2 s before each collision.
+    """
     wrong = np.zeros(len(log.missed), dtype=np.bool_)
     edges = np.flatnonzero(np.diff(np.concatenate(([0], log.missed.astype(np.int8), [0]))))
     for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
@@ -162,7 +165,7 @@ _SETTLES_S = 1.0
 
 
 class DoubtResponse(StrEnum):
-    """Response of the robot to its doubt, without a teacher."""
+    """Response to doubt of a robot without a teacher: it only logs the doubt, or it stands."""
 
     TELLS = "only told"
     STANDS = "stands"
@@ -170,7 +173,7 @@ class DoubtResponse(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class DoubtSetup:
-    """World, seed, duration and response of one drive."""
+    """Setup of one drive in which doubt is logged: world, seed, duration, and the response to doubt."""
 
     world: str
     seed: int
@@ -194,7 +197,7 @@ def with_doubt(task: TaskSettings, response: DoubtResponse) -> TaskSettings:
 
 
 class DoubtRun(Episode):
-    """Episode that logs doubt, missed turns and collisions."""
+    """Drive without a teacher that logs, tick by tick, doubt, missed turns and collisions."""
 
     def __init__(
         self, simulation: Simulation, runtime: Runtime, setup: DoubtSetup, on_progress: Callable[[float], None]

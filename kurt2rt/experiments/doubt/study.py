@@ -30,7 +30,7 @@ TICKS_PER_MINUTE = 6000
 
 
 class DoubtOutcome(Outcome):
-    """Drive of one robot in one world."""
+    """Stored outcome of one job: the log of a robot's drive in one world."""
 
     log: DriveLog
 
@@ -57,7 +57,7 @@ class DoubtJob(StudyJob):
 
 
 class DoubtDrives(NamedTuple):
-    """Task whose doubt is studied, and its drives."""
+    """Subject of a study of doubt: the task, and worlds, responses and duration of its drives."""
 
     task: TaskSettings
     worlds: tuple[str, ...]

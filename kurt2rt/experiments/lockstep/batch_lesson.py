@@ -94,7 +94,7 @@ def open_batch_lesson(
 
 
 class BatchTrainingRun(TrainingRun):
-    """Training run whose robot drives compiled stretches."""
+    """Training run that drives the robot in compiled stretches from one command to the next."""
 
     def __init__(
         self,

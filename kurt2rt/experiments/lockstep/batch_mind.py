@@ -219,9 +219,9 @@ def build_minds(
 
 
 def choice_of(team: LearnerTeam, task: TaskSettings, *, taught: Callable[[], bool]) -> Choose:
-    """Return the choice of actions by learners; it raises BatchRefusedError if one fails.
+    """Return the function by which learners choose a compiled robot's actions.
 
-    `taught`: returns whether a teacher is there who answers.
+    It raises BatchRefusedError if a learner fails. `taught`: returns whether a teacher is there who answers.
     """
 
     def choose(behaviour: str, situation: NDArray[np.float64]) -> str | None:
@@ -289,5 +289,5 @@ def _kind_and_sensors(
 
 
 def refused(task: TaskSettings, what: str) -> BatchRefusedError:
-    """Return the refusal of a task for what the batch does not know."""
+    """Return the error of a task of which the batch does not know `what`; its advice is the CAN bus."""
     return BatchRefusedError(f"a batch does not know {what}", where=f"task {task.name}", do=_ON_THE_BUS)

@@ -83,7 +83,7 @@ class DriveRow(Settings):
 
     @property
     def judged(self) -> bool:
-        """True if the policy's own drive is a measure."""
+        """True if the drive has a verdict, because the policy's own drive is a measure in this world."""
         return self.verdict is not ExamVerdict.NOT_JUDGED
 
     @property
@@ -141,7 +141,10 @@ class DriveRow(Settings):
         return self.with_verdict(ExamVerdict.PASSED if clean and enough and right else ExamVerdict.FAILED)
 
     def counted(self) -> Self:
-        """Return the drive without the measures of metric and actions, as a batch drives faster without them."""
+        """Return the drive without progress, findings and changes of action, which some studies do not read.
+
+        A batch drives faster without them.
+        """
         measures = {"progress": 0.0, "least_progress": 0.0, "unit": "", "action_changes_per_s": 0.0, "findings": {}}
         return self.model_copy(update=measures)
 
@@ -150,7 +153,7 @@ class DriveRow(Settings):
         return self.model_copy(update={"verdict": verdict})
 
     def as_measure(self) -> Self:
-        """Return the drive of a policy: it passed unless it `failed`."""
+        """Return the policy's own drive with its verdict: it passed unless it `failed`."""
         return self.with_verdict(ExamVerdict.FAILED if self.failed else ExamVerdict.PASSED)
 
     def stored(self, *, places: bool = False) -> Self:
@@ -165,5 +168,5 @@ def label_of(world: str) -> str:
 
 
 def rounded_places(positions: Iterable[Position | Place]) -> tuple[Place, ...]:
-    """Return positions in m, rounded to the millimetre."""
+    """Return positions in m, rounded to the millimetre, as results store them."""
     return tuple((round(x_m, 3), round(y_m, 3)) for x_m, y_m in positions)

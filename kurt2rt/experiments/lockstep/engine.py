@@ -16,7 +16,7 @@ LEAST_WITNESSES = 3
 
 
 class Engine(StrEnum):
-    """Engine that drives exams or lessons."""
+    """Engine that drives a lesson or an exam in simulated time."""
 
     CAN = "can"
     """Simulated CAN bus, robot by robot."""
@@ -30,7 +30,7 @@ class BatchDiffersError(UserError):
 
 @dataclass(frozen=True, slots=True)
 class Engines:
-    """Engines of one robot's lesson and exams."""
+    """Engines that a job of a study uses: one for its lesson, one for its exams."""
 
     lesson: Engine = Engine.CAN
     exams: Engine = Engine.CAN

@@ -29,7 +29,7 @@ from simbridge.contracts.simulation import Position, Simulation
 
 @dataclass(frozen=True, slots=True)
 class ExamSetup:
-    """World, seed and variant of one exam."""
+    """Setup of one drive without a teacher: world, seed, and what decides, RLAs, learners or the policy."""
 
     world: str
     seed: int
@@ -84,7 +84,7 @@ async def examine(
 
 
 class ExamRun(Episode):
-    """Episode without a teacher, in the world of an exam."""
+    """Drive of one exam over the CAN bus, until its time is over, an alarm, or the robot is stuck."""
 
     def __init__(
         self,

@@ -11,7 +11,7 @@ from hal.robot_settings import InfraredSettings
 
 
 class FaultKind(StrEnum):
-    """Way in which a sensor is broken."""
+    """Fault of an infra-red sensor that an exam simulates, by what its reading then is."""
 
     LOW = "low"
     """It repeats the floor of its law, as with nothing in view."""
@@ -33,7 +33,7 @@ _OPEN_INPUT_COUNTS = 3
 
 
 class SensorBreak(NamedTuple):
-    """Sensor that breaks in a drive after BREAKS_AT_S."""
+    """Sensor that an exam breaks BREAKS_AT_S after its start, and how."""
 
     place: int
     """Place in the sensor table."""

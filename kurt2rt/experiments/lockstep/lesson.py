@@ -34,7 +34,7 @@ _AGREEMENT_EVERY_S = 10
 
 
 class LessonCounts(Settings):
-    """Counts of one training run, which studies store."""
+    """Counts of one training run, which studies store as part of an outcome."""
 
     seed: int
     world: str
@@ -114,7 +114,7 @@ class TrainingResult:
 
 
 class GivenLesson(NamedTuple):
-    """Result of a lesson, and what it taught."""
+    """Training run that was given: its result, and its teaching events, from which exams make the robot."""
 
     result: TrainingResult
     events: list[TeachingEvent]
@@ -155,7 +155,7 @@ async def teach(
 
 
 class TrainingRun(Episode):
-    """Episode in which a scripted teacher teaches, phase by phase of a plan."""
+    """Drive in which a scripted teacher teaches the robot over the CAN bus, phase by phase of a plan."""
 
     def __init__(
         self,

@@ -14,7 +14,7 @@ from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter, utc
 
 
 class LessonLostError(UserError):
-    """Lessons could not be saved, or were refused."""
+    """Lesson that the robot refused or could not save, which ends a training run."""
 
 
 class LessonKeeping:

@@ -24,7 +24,10 @@ _UNKNOWN = int(LessonCause.UNKNOWN)
 
 
 class LessonMind:
-    """Commands, lessons and counts of a robot in a batch; `robot` drives by the RLAs that they make."""
+    """Runtime's side of a compiled lesson: it carries out commands and gives lessons at the right ticks.
+
+    The compiled `robot` drives by the RLAs that these lessons make.
+    """
 
     def __init__(
         self,

@@ -15,23 +15,23 @@ _CORRECTED_ONLY = (Phase.SUPERVISED, Phase.CORRECTIONS)
 
 @dataclass(frozen=True, slots=True)
 class SignalTimes:
-    """Intervals in s at which a scripted teacher rewards and appraises."""
+    """Intervals in s at which a scripted teacher rewards in phase 3 and appraises in phase 4."""
 
     bad_every_s: float = 1.0
     good_every_s: float = 2.0
     neutral_every_s: float = 1.0
     """Interval of neutral appraisals, for the critic only."""
     patience_s: float = 0.0
-    """He speaks of what has been bad for so long without a break; teaching the critic he needs none."""
+    """Time in s that something is bad before the teacher speaks of it; while teaching the critic, none."""
     gap_s: float = 0.0
     """Least time between two rewards or appraisals."""
     most_blame: int = 0
-    """He blames no more often than this; 0: as often as he likes."""
+    """Shortest time in s between two rewards of -1; 0: no limit."""
 
 
 @dataclass(frozen=True, slots=True)
 class LessonPlan:
-    """Phases of a training run, and the acts of the teacher in them."""
+    """Plan of a training run: its phases with their times, and how often the teacher acts in them."""
 
     phases: tuple[tuple[Phase, float], ...]
     """Each with its time in s."""

@@ -28,7 +28,7 @@ class NoTeachingAllowed:
 
 @dataclass(frozen=True, slots=True)
 class TrainingStore:
-    """Event store of a training run, with the knowledge that earlier runs left."""
+    """Destination of the lessons of a training run, and the knowledge that it continues from."""
 
     store: EventStore
     events: Sequence[TeachingEvent] = ()

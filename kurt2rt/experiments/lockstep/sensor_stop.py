@@ -6,7 +6,7 @@ from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 
 
 class SensorStopAct(Enum):
-    """Act of the person next to a robot that stopped for a broken sensor."""
+    """Act by which a person frees a robot that stopped for a broken sensor, in a simulated lesson."""
 
     CARRY_AWAY = "carry_away"
     RESUME = "resume"

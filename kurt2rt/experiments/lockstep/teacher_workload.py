@@ -63,7 +63,7 @@ _COUNTED: dict[type[Command], str] = {
 
 
 class TeacherWorkload:
-    """Counter of commands and manual acts, minute by minute."""
+    """Count of a teacher's teaching commands and manual acts, such as rescues, in each minute of a run."""
 
     def __init__(self, ticks: int, period_s: float) -> None:
         """Count for `ticks` ticks of `period_s`; the last minute may be shorter."""

@@ -48,7 +48,7 @@ def ways(trail: Sequence[PlaceT]) -> list[list[PlaceT]]:
 
 
 def columns(places: Sequence[tuple[float, float]]) -> tuple[list[float], list[float]]:
-    """Return all x and all y of the places, in m, as two lists."""
+    """Return all x and all y of the places, in m, as two lists, as matplotlib draws them."""
     return [x for x, _ in places], [y for _, y in places]
 
 

@@ -23,7 +23,7 @@ _EXAMINER = "examiner"
 
 @dataclass(frozen=True, slots=True)
 class GoalChosen:
-    """Goal with its start and shortest way."""
+    """Goal of a navigation exam: a named place, the street to start from, and the shortest way."""
 
     name: str
     start: Street
@@ -93,7 +93,7 @@ def demonstrated_m(led: Sequence[Street | None], start: Street, goal: Street) ->
 
 
 class GoalOutcome(Settings):
-    """Outcome of one drive to a goal."""
+    """Outcome of one drive to a goal, as the study stores it: way, shortest way, collisions."""
 
     goal: str
     why_not: str

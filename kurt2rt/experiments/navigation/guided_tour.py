@@ -161,7 +161,7 @@ class TourGuide:
 
 
 class TourCounts(Settings):
-    """Counters of one tour."""
+    """Counts of one guided tour, which the navigation study stores."""
 
     teaching_s: float
     ways: int
@@ -179,7 +179,7 @@ class TourCounts(Settings):
 
 
 class TourResult(NamedTuple):
-    """Counters and knowledge of one tour."""
+    """Result of a guided tour: its counts, and what the exam after it needs, such as named places."""
 
     counts: TourCounts
     home: Pose

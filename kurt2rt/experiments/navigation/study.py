@@ -53,7 +53,7 @@ _BESIDE_M = 0.15
 
 
 class ErrandsOutcome(Outcome, TourCounts):
-    """Outcome of one robot: a tour and drives to goals."""
+    """Stored outcome of one robot that was led through a town and then sent to goals."""
 
     ways_in_all: int
     """Number of ways of the town, taught or not."""
@@ -64,7 +64,7 @@ class ErrandsOutcome(Outcome, TourCounts):
     """Trail of the errands."""
 
     def good(self, detour_at_most: float) -> int:
-        """Return the number of goals reached at this ratio of distances or less."""
+        """Return the number of goals reached by a way of at most this ratio to the shortest one."""
         return sum(each.reached and each.detour <= detour_at_most for each in self.errands)
 
     @property

@@ -16,7 +16,7 @@ Count = Annotated[int, Field(ge=1, le=10_000)]
 
 
 class AskedSettings(Settings):
-    """Numbers to reach; what is left out is not asked for."""
+    """Targets of one experiment of the paper study; a target that is left out is not checked."""
 
     rlas_at_most: Annotated[int, Field(ge=0, le=10_000)] = 0
     """The median of all robots; 0: not asked for."""
@@ -29,7 +29,7 @@ class AskedSettings(Settings):
 
 
 class UnseenSettings(Settings):
-    """Generated worlds for exams, shared among the robots."""
+    """Generated worlds that no robot was taught in; each robot is examined in some of them."""
 
     kind: Literal["rooms", "streets"]
     first: Annotated[int, Field(ge=0)]
@@ -44,7 +44,7 @@ class UnseenSettings(Settings):
 
 
 class ExperimentSettings(Settings):
-    """One task, taught and examined with many seeds."""
+    """One task of the paper study, what its results have to reach, and the unseen worlds of its exams."""
 
     task: str
     """Name of the task, or path of its YAML file."""
@@ -56,7 +56,7 @@ class ExperimentSettings(Settings):
 
 
 class GrowthSettings(Settings):
-    """Settings of Fig. 2: growth of the number of RLAs in phase 1, for several R."""
+    """Settings of Fig. 2: how the number of RLAs grows in phase 1, for several radii R in counts."""
 
     task: str
     radii: Annotated[tuple[Annotated[float, Field(gt=0, le=100_000)], ...], Field(min_length=1)]
@@ -114,7 +114,7 @@ def load_paper(name_or_path: str = "basic_level", factory: SimulationFactory | N
 
 @dataclass(frozen=True, slots=True)
 class Extent:
-    """Limits of tasks, worlds and times; settings of learning stay."""
+    """Limits that make the paper study shorter, such as fewer worlds; settings of learning stay."""
 
     tasks: tuple[str, ...] | None = None
     """Tasks unless the user names others; None: all."""

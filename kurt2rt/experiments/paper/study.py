@@ -30,7 +30,7 @@ Reading = Literal["shipped", "plain"]
 
 
 class GrowthOutcome(Outcome):
-    """One robot, taught in phase 1 only."""
+    """Stored outcome of a robot taught in phase 1 only: how its number of RLAs grew (Fig. 2)."""
 
     growth: tuple[int, ...]
     """Number of RLAs after each second."""
@@ -38,7 +38,7 @@ class GrowthOutcome(Outcome):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TaughtJob(CurriculumJob):
-    """Robot of one task, one reading of the paper and one seed; also generated worlds of its own are in its exams."""
+    """Job that teaches one robot one task in one reading, and examines it, also in unseen worlds."""
 
     keeps_places: ClassVar[bool] = True
     settings: ExperimentSettings
@@ -66,7 +66,7 @@ class GrowthJob(StudyJob):
 
 
 class PaperExtent(NamedTuple):
-    """Experiments that are studied, and how much of each."""
+    """Subject of the paper study: its settings, and limits for a quick part of it."""
 
     paper: PaperSettings
     extent: Extent
@@ -176,7 +176,7 @@ def _require_tasks(chosen: Sequence[ExperimentSettings], parts: JobParts) -> Non
 
 
 class Experiment(NamedTuple):
-    """One task in one reading."""
+    """Key of a group of robots: a task in one reading of the paper, the shipped or the plain one."""
 
     settings: ExperimentSettings
     reading: Reading
@@ -193,7 +193,7 @@ Examined = Group[Experiment, ExaminedOutcome]
 
 
 class GrowthStudy(NamedTuple):
-    """Fig. 2 in one reading."""
+    """Curves of Fig. 2 in one reading: the number of RLAs over time, for each radius R."""
 
     reading: Reading
     task: str
@@ -203,7 +203,7 @@ class GrowthStudy(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class PaperStudy:
-    """Plan and outcomes of the study."""
+    """Stored outcomes of the paper study, grouped for its tables and figures, with their plan."""
 
     plan: StudyPlan[PaperExtent]
     experiments: tuple[Examined, ...]

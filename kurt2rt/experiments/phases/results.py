@@ -79,7 +79,7 @@ def score_of(judgements: Sequence[Judgement]) -> dict[str, float | None]:
 
 
 class Measure(NamedTuple):
-    """Something of an exam that may become better or worse."""
+    """Number of an exam by which robots are compared before and after a step, and its better direction."""
 
     name: str
     of: Callable[[DriveRow], float | None]
@@ -100,7 +100,7 @@ MEASURES = (
 
 @dataclass(frozen=True, slots=True)
 class Paired:
-    """The same robots at two stages, in one world, by one measure."""
+    """Comparison of the same robots before and after a step, in one world, by one measure."""
 
     world: str
     measure: Measure
@@ -139,7 +139,7 @@ class Paired:
 
     @property
     def surely(self) -> str:
-        """`better` or `worse` if the whole interval is; else empty."""
+        """Verdict `better` or `worse` if the whole 95 % interval of the difference is; else empty."""
         low, high = (self.difference.low, self.difference.high)[:: self.measure.better]
         return "better" if low * self.measure.better > 0 else "worse" if high * self.measure.better < 0 else ""
 

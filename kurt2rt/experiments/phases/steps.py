@@ -69,7 +69,7 @@ BRANCHES = (
 
 @dataclass(frozen=True, slots=True)
 class PhaseStep:
-    """Knowledge that another step left, what is done to it, and where it is examined."""
+    """Plan of one step: the knowledge it continues, what is done to that, and the worlds of its exams."""
 
     name: Step
     after: Step
@@ -226,9 +226,10 @@ _NAME = "corruption"
 def corrupt(
     rlas: Sequence[Rla], actions: Sequence[str], share: float, seed: int, purpose: str
 ) -> Iterator[ActionReplaced]:
-    """Yield the events that give this share of the RLAs, 0 to 1, at least one, another action of `actions`.
+    """Yield the corrections that make a share of the RLAs wrong, for a step that has to repair them.
 
-    Each purpose has wrong actions of its own: a critic is not examined on those that it was taught on.
+    `share`: 0 to 1, but at least one RLA. The wrong actions are drawn from `actions`. Each purpose has wrong actions of
+    its own: a critic is not examined on those that it was taught on.
     """
     chance = random.Random(f"corruption for {purpose}, seed {seed}")
     chosen = chance.sample(rlas, max(1, round(share * len(rlas)))) if rlas else []
@@ -239,7 +240,7 @@ def corrupt(
 
 
 def critic_lessons(events: Iterable[TeachingEvent]) -> Iterator[TeachingEvent]:
-    """Yield those of the events that are lessons of the critic, or appraisals of its agreement."""
+    """Yield the events that taught the critic, to give the same critic to other knowledge of the robot."""
     ids: set[int] = set()
     for event in events:
         match event:
@@ -255,7 +256,7 @@ def critic_lessons(events: Iterable[TeachingEvent]) -> Iterator[TeachingEvent]:
 def shuffled(
     appraisals: Sequence[Rla], settings: CriticSettings, seed: int, period_s: float
 ) -> Iterator[TeachingEvent]:
-    """Yield the appraisal RLAs with shuffled opinions, and appraisals that make the robot trust them.
+    """Yield the lessons of a control critic: appraisal RLAs with shuffled opinions, and appraisals to trust them.
 
     `seed`: of the shuffle. `period_s`: duration of a tick in s.
     """
@@ -276,7 +277,7 @@ def shuffled(
 
 
 class Judgement(Settings):
-    """Opinions of judge and critic, with the number of their ticks."""
+    """Number of ticks in which judge and critic had this pair of opinions."""
 
     judged: int
     """Opinion of the judge: -1, 0 or +1."""

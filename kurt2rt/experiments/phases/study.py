@@ -50,7 +50,7 @@ from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
 
 
 class TeachingOutcome(LessonCounts):
-    """Counts of the training run of one step, and of its lessons."""
+    """Counts of one step's training run, which the phases study stores."""
 
     withdrawn: int
     """Actions that were withdrawn because their value fell."""
@@ -66,7 +66,7 @@ class TeachingOutcome(LessonCounts):
 
 
 class StageOutcome(Settings):
-    """A robot's knowledge at one stage, how it came there, and how it drives with it."""
+    """Stored state of a robot after one step: its knowledge, how it was taught, and its exams."""
 
     name: Step
     rlas: int
@@ -83,7 +83,7 @@ class StageOutcome(Settings):
 
 
 class JobOutcome(Outcome):
-    """Result of one job of this study: the steps of one robot, and the drives of the teacher's policy."""
+    """Stored outcome of one job of the phases study: its steps, and the drives of the teacher's policy."""
 
     stages: tuple[StageOutcome, ...]
     teachers: tuple[DriveRow, ...] = ()
@@ -216,7 +216,7 @@ class FirstPhasesJob(PhasesJob):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepJob(PhasesJob):
-    """Job of one step after phases 1 and 2."""
+    """Job that continues the knowledge of an earlier job of its robot by one step of phases 3 to 5."""
 
     of: PhaseStep
     before: "FirstPhasesJob | StepJob"
@@ -316,7 +316,7 @@ class StepJob(PhasesJob):
 
 
 class PhasesTask(NamedTuple):
-    """Task that is taught through the phases."""
+    """Subject of the phases study: a task, and whether only a quick part is done."""
 
     task: TaskSettings
     quick: bool

@@ -19,7 +19,7 @@ _HISTORY = 12
 
 
 class RouteMistake(Settings):
-    """One junction at which the robot did not do what is right."""
+    """Junction of a route that the robot left wrong, with the layer of the robot that is the cause."""
 
     at_s: float
     leg: int
@@ -30,7 +30,10 @@ class RouteMistake(Settings):
 
 
 class RouteMonitor:
-    """Compares what the robot noticed of junctions with what it really did there."""
+    """Finder of the layer that failed at each junction left wrong: noticing, the mid level, or driving.
+
+    It compares the junctions that the robot noticed with those that it really drove through.
+    """
 
     def __init__(self) -> None:
         self.wrong: list[RouteMistake] = []

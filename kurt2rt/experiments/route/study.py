@@ -22,7 +22,7 @@ from kurt2rt.knowledge.journal.loading import copy_knowledge, read_lessons
 
 
 class RouteOutcome(TaughtOutcome):
-    """One robot, taught one route and examined on it; its lesson counts the basic level."""
+    """Stored outcome of a robot that was taught one route and examined on it."""
 
     route: tuple[Place, ...]
     """Its junctions, from the first decision on."""
@@ -38,7 +38,7 @@ Routes = Group[int, RouteOutcome]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BasicJob(StudyJob):
-    """Training run of the task that teaches the streets."""
+    """Job in which a robot learns to drive in streets, before other jobs teach it routes."""
 
     outcome = TaughtOutcome
 
@@ -50,7 +50,7 @@ class BasicJob(StudyJob):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RouteJob(StudyJob):
-    """Training run and exam on one route; the task holds the robot's own route."""
+    """Job that teaches one robot a route on top of its knowledge of the streets, and examines it there."""
 
     outcome = RouteOutcome
     basic: Path
@@ -133,7 +133,7 @@ def _named(report: Report, plan: LessonPlan) -> Report:
 
 
 class RouteTasks(NamedTuple):
-    """Task with the routes that are taught."""
+    """Subject of the route study: the task of the routes, and the task that teaches the streets before."""
 
     task: TaskSettings
     """Task without the route, which each robot's seed draws."""
@@ -182,7 +182,7 @@ def make_plan(
 
 
 class TaughtStreets(NamedTuple):
-    """Knowledge of the streets, which robots have before a route."""
+    """Knowledge files of robots that can drive in streets, and the jobs that make those which are missing."""
 
     jobs: tuple[BasicJob, ...]
     """Empty where they were taught already."""

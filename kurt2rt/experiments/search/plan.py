@@ -25,7 +25,7 @@ With presses alone a search found settings of fleeing that ask 40 times less, an
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SearchJob(CurriculumJob):
-    """Training run and exams of one robot with the settings of a trial; the knowledge is not stored."""
+    """Job that teaches and examines one robot with the settings of a trial; the knowledge is not stored."""
 
     keeps_knowledge: ClassVar[bool] = False
     label: str
@@ -37,13 +37,13 @@ class SearchJob(CurriculumJob):
 
 
 def label_of(trial: int) -> str:
-    """Return the label of a trial's jobs."""
+    """Return the label of a trial's jobs, its number in four digits, which sorts their files."""
     return f"{trial:04d}"
 
 
 @dataclass(frozen=True, slots=True)
 class SearchPlan:
-    """Search that can be run."""
+    """Checked plan of a search: makes the jobs of each trial, and of the check of the best ones."""
 
     search: SearchSettings
     space: TaskSpace
@@ -110,7 +110,7 @@ class SearchPlan:
 
 
 def effort(robot: ExaminedOutcome, objective: Objective) -> int:
-    """Return the number that is to be small: presses, presses and collisions, or RLAs."""
+    """Return the effort of one robot, to be made small: presses, presses and collisions, or RLAs."""
     match objective:
         case "passed_then_presses":
             return robot.lesson.presses

@@ -26,7 +26,7 @@ def may_be_searched(seed: int) -> bool:
 
 
 class SeedRange(Settings):
-    """Seeds that follow each other."""
+    """Range of consecutive seeds, a robot each."""
 
     first: Annotated[int, Field(ge=0, le=1_000_000)]
     count: Count
@@ -38,7 +38,7 @@ class SeedRange(Settings):
 
 
 class Robots(Settings):
-    """Robots, and the worlds of their exams."""
+    """Robots of a search or its check, a seed each, and the worlds of their exams."""
 
     seeds: SeedRange
     worlds: Annotated[tuple[str, ...], Field(min_length=1)]
@@ -50,14 +50,14 @@ class Robots(Settings):
 
 
 class CheckSettings(Robots):
-    """Robots of the check, and the settings that are checked."""
+    """Robots on which the best trials are compared with the shipped settings; number of these trials."""
 
     best: Annotated[int, Field(ge=1, le=10)]
     """Number of trials, the best first, that are compared with the shipped settings."""
 
 
 class Dimension(Settings):
-    """Key of the task's file, and the values to try."""
+    """Key of the task's file that a search changes, and the range of its values."""
 
     key: Annotated[str, Field(pattern=r"^[a-z_0-9]+(\.[a-z_0-9]+)+$")]
     """Levels with dots between them; a number is a place in a list, from 0."""
@@ -166,7 +166,7 @@ def _changes_of_values(content: Mapping[str, Any], values: Values) -> dict[str, 
 
 
 class TaskSpace:
-    """Task of a search, with the values of a trial in place of its own."""
+    """Maker of the task of each trial: the searched task with the trial's values."""
 
     def __init__(self, search: SearchSettings, changes: Mapping[str, str], profile: TeacherProfile) -> None:
         """Load the task and check each key of the space.

@@ -71,7 +71,7 @@ class SearchTrials:
 
 
 def finished(trials: Sequence[FrozenTrial]) -> list[FrozenTrial]:
-    """Return the trials that have a score."""
+    """Return the trials that have a score; pruned ones and those under way have none."""
     return [trial for trial in trials if trial.state is TrialState.COMPLETE]
 
 
@@ -142,7 +142,7 @@ _FILE = "check.json"
 
 
 class CheckRecord(Settings):
-    """Trials that are checked, written down before the check begins."""
+    """Choice of the trials to check, written down before the check begins, so that it is made only once."""
 
     trials: int
     """Number of trials that the best ones were chosen among."""
@@ -153,7 +153,7 @@ class CheckRecord(Settings):
 
 @dataclass(frozen=True, slots=True)
 class CheckedSettings:
-    """Settings of one trial, compared with the shipped ones on the same robots."""
+    """Comparison of one trial's settings with the shipped ones, robot by robot, in the check."""
 
     label: str
     values: Values

@@ -24,11 +24,11 @@ _MAKE = "kurt2rt study worker --new FILE --scheduler tls://HOST:PORT makes one"
 
 
 class ClusterError(UserError):
-    """A cluster cannot be used."""
+    """Cluster that cannot be used: no such file, or no scheduler or worker that answers."""
 
 
 class ClusterFile(NamedTuple):
-    """Content of the file that every member of a cluster has."""
+    """Address and keys of a cluster, from the file by which its members know each other."""
 
     address: str
     """`tls://HOST:PORT` of the scheduler."""

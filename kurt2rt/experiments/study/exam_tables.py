@@ -30,7 +30,7 @@ _SUCCESS_WORDS = {ExamVerdict.PASSED: "yes", ExamVerdict.FAILED: "no"}
 
 
 class Drives(NamedTuple, Generic[KeyT]):
-    """Drives that share a line of a table: of one stage or experiment in one world."""
+    """Exams that share a line of a table: those of one stage or experiment in one world, robot by robot."""
 
     of: KeyT
     """Stage or experiment."""
@@ -51,7 +51,10 @@ class Drives(NamedTuple, Generic[KeyT]):
 
 
 def by_world(of: KeyT, drives: Iterable[DriveRow]) -> list[Drives[KeyT]]:
-    """Return drives in lines of one world each, in order of their first drives."""
+    """Return drives as lines of a table, one for each world, in order of their first drives.
+
+    `of`: stage or experiment that the drives belong to.
+    """
     groups = group_by(drives, lambda each: each.world)
     return [Drives(of, world, rows, place == 0) for place, (world, rows) in enumerate(groups)]
 

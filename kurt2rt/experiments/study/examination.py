@@ -85,7 +85,7 @@ class Examiner:
 
 
 class Checkpoint(Settings):
-    """Knowledge after a number of presses, and its exams."""
+    """Exams of a robot with what it knew after a number of presses of its lesson."""
 
     presses: int
     """Presses asked for; a robot that gave cause for fewer has all that it was taught."""

@@ -19,7 +19,7 @@ _DPI = 130
 
 
 class SavedFigure(NamedTuple):
-    """A PNG, and what it shows."""
+    """Figure of a report: its PNG file, and the title and caption printed with it."""
 
     path: Path
     title: str

@@ -21,7 +21,7 @@ TEN_MIN_S = 600.0
 
 
 class Rate(NamedTuple):
-    """A rate, or a mean of differences, and its 95 % interval."""
+    """Estimate over the drives of a study, a rate or a mean difference, with its 95 % interval."""
 
     value: float
     low: float

@@ -42,7 +42,7 @@ class StudyError(UserError):
 
 
 class Outcome(Settings):
-    """Result of a job as its study stores it in JSON, with what made it."""
+    """Base of stored outcomes: result of a job as its study keeps it in JSON, with its provenance."""
 
     made_of: Provenance
     seed: int
@@ -50,7 +50,7 @@ class Outcome(Settings):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StoredJob(ABC):
-    """Job that can be sent to another process, and leaves its result in a file."""
+    """Base of jobs that a pool runs, here or on other machines; each leaves its result in a file."""
 
     outcome: ClassVar[type[Settings]]
     """Schema of the result."""
@@ -96,7 +96,7 @@ class _AnyOutcome(Settings, extra="ignore"):
 
 
 class Results:
-    """A folder of results. Can be sent to another process."""
+    """Folder of a study's results, one file for each job; it can be sent to another process."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -183,7 +183,7 @@ SEED = "SEED"
 
 
 class JobParts(TypedDict):
-    """Fields that all jobs of a study share."""
+    """Fields that all jobs of a study share: the simulator, the robot, and the folder of results."""
 
     factory: SimulationFactory
     robot: RobotSettings
@@ -191,7 +191,7 @@ class JobParts(TypedDict):
 
 
 class TaughtOutcome(Outcome):
-    """Stored outcome of a robot that was taught."""
+    """Stored outcome of a job that taught a robot: the counts of its lesson."""
 
     lesson: LessonCounts
 
@@ -212,7 +212,7 @@ class ExaminedOutcome(TaughtOutcome):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StudyJob(StoredJob):
-    """Drives of one robot, which leave a file of results and one of knowledge."""
+    """Base of the jobs of studies: drives of one robot, which leave a result and maybe a knowledge file."""
 
     gives_lesson: ClassVar[bool] = False
     """True if the job gives the task's own lesson to a robot without knowledge, as a batch can."""
@@ -279,7 +279,7 @@ class StudyJob(StoredJob):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurriculumJob(StudyJob):
-    """Training run and exams of one robot."""
+    """Job that teaches one robot its task, and examines it in each world."""
 
     outcome = ExaminedOutcome
     gives_lesson: ClassVar[bool] = True

@@ -26,11 +26,11 @@ _TELL_EVERY_S = 5.0
 
 
 class JobKilledError(UserError):
-    """The process of a job was killed from outside; the message names the job."""
+    """Process of a job that was killed from outside; the message names the job."""
 
 
 class PoolProgress(NamedTuple):
-    """Progress of all jobs of a pool."""
+    """Progress of the jobs that a pool runs, for a progress bar."""
 
     done_s: float
     """Robot time so far, in s."""

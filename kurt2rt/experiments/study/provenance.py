@@ -22,9 +22,9 @@ _COMPUTE = ("numpy", "pymunk", "shapely")
 
 
 class Provenance(Settings):
-    """Provenance of a result: hashes of settings and source, and versions of the computing packages.
+    """Hashes of all that decides a result: settings, worlds, source and versions of packages.
 
-    Error texts name the fields.
+    Results of another provenance are refused in the same folder; error texts name the fields that differ.
     """
 
     task: str
@@ -73,12 +73,12 @@ def source_hash() -> str:
 
 
 def settings_hash(*settings: str) -> str:
-    """Return the first 16 hexadecimal digits of the SHA-256 of all texts."""
+    """Return the hash of all texts, in their order: the first 16 hexadecimal digits of their SHA-256."""
     return hashlib.sha256("\0".join(settings).encode()).hexdigest()[:16]
 
 
 class Fingerprints:
-    """Takes them, with what many jobs share looked at once."""
+    """Maker of the provenance of a study's jobs; it hashes what they share only once."""
 
     def __init__(
         self,

@@ -18,11 +18,11 @@ from kurt2rt.platform.durable_files import fsync_file, write_durably
 
 
 class WorkerDiffersError(UserError):
-    """A worker has another program, or came to another result."""
+    """Worker of a cluster that has another program, or came to another result than its witness."""
 
 
 class RemoteJob(NamedTuple):
-    """Job and files, for a machine that shares no disk with this one."""
+    """Job of a study with all files that it reads, for a worker on a machine without the sender's disk."""
 
     job: bytes
     """Pickled job."""

@@ -18,7 +18,10 @@ _MADE_WITH = ("kurt2rt", "matplotlib", "jinja2")
 
 
 class Section(NamedTuple):
-    """Part of a report. Between backticks in a text stands what is typed."""
+    """Section of a study's report: a heading, texts, tables and pictures.
+
+    Between backticks in a text stands what is typed.
+    """
 
     heading: str
     """Empty: it goes on with the section before."""
@@ -64,7 +67,7 @@ def write_report(
 
 
 def spans(seeds: Sequence[int]) -> str:
-    """Return seeds as a user types them: 100-119, or 1,5,7."""
+    """Return ascending seeds as a user types them with --seeds: 100-119, or 1,5,7."""
     first, last = seeds[0], seeds[-1]
     if len(seeds) > 1 and list(seeds) == list(range(first, last + 1)):
         return f"{first}-{last}"

@@ -14,7 +14,10 @@ from kurt2rt.knowledge.files.archive_existing import archive_existing
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeedJob(CurriculumJob):
-    """Training run and exams of one seed; an earlier knowledge file of the robot gets a new name."""
+    """Job of `kurt2rt train --seeds` that teaches and examines the robot of one seed.
+
+    An earlier knowledge file of the robot gets a new name.
+    """
 
     replaces_others: ClassVar[bool] = True
 

@@ -37,7 +37,7 @@ class BusWitnessOutcome(Outcome):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BusWitnessJob(StudyJob):
-    """Job that is done in the batch and on the CAN bus."""
+    """Job that repeats another job in the batch and on the CAN bus, and compares both results."""
 
     outcome = BusWitnessOutcome
     keeps_knowledge: ClassVar[bool] = False
@@ -135,7 +135,7 @@ WORTHWHILE_S = 1800.0
 
 
 class EngineRequest(StrEnum):
-    """Engine that a user asks for."""
+    """Engine that a user asks for with --engine; the plan chooses the engine by it."""
 
     AUTO = "auto"
     """Compiled engine if it is installed, knows the task, and saves time."""
@@ -146,7 +146,7 @@ class EngineRequest(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class StudyPlan(Generic[AboutT]):
-    """Jobs of a study, in the order of its tables."""
+    """Plan of a study: its jobs in the order of its tables, and the witnesses of what a batch drives."""
 
     about: AboutT
     """Facts that the tables tell next to the results."""
@@ -231,7 +231,7 @@ class _KnownTasks:
 
 
 class Group(NamedTuple, Generic[KeyT, RowT]):
-    """Rows that share a line of a table."""
+    """Rows of a table that share a key, such as the robots of one task."""
 
     of: KeyT
     """Key that they have in common."""

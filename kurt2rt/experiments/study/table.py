@@ -20,7 +20,7 @@ Column = tuple[str, Callable[[Any], object]]
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Table of texts for terminal and report, with title and note."""
+    """Table of a study, of texts, for terminal and report."""
 
     title: str
     columns: tuple[str, ...]
@@ -33,7 +33,7 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """Results that a study shows when its jobs are done."""
+    """Results that a study shows at its end, in the terminal or as JSON: tables, files and commands."""
 
     tables: Sequence[Table]
     not_judged: Sequence[str] = ()
@@ -105,7 +105,10 @@ def median(values: Iterable[float]) -> float:
 
 
 def of_text(count: int, whole: int, *, interval: bool = False) -> str:
-    """Return `18 of 20`; `none judged` of none. `interval`: with the 95 % interval of the share."""
+    """Return `18 of 20` for `count` of `whole`; with an interval, `none judged` if `whole` is 0.
+
+    `interval`: with the 95 % interval of the share.
+    """
     if not whole and interval:
         return "none judged"
     text = f"{count} of {whole}"
@@ -172,7 +175,10 @@ class Verdict(NamedTuple):
 
 
 def needed_of(share: float, robots: int) -> int:
-    """Return the number of robots that a share, 0 to 1, asks for: 0.9 of 20 is 18, also where the product is more."""
+    """Return the least number of robots that reaches a share, 0 to 1: of 20 robots 0.9 asks for 18.
+
+    Rounding errors of the product do not count.
+    """
     return math.ceil(share * robots - 1e-9)
 
 

@@ -28,7 +28,7 @@ _SMALL_ENOUGH_TO_UNPACK = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 
 @dataclass(frozen=True)
 class Archive:
-    """Content of an archive that was checked."""
+    """Manifest and files of a package, each compared with its SHA-256."""
 
     manifest: Mapping[str, Any]
     files: Mapping[str, bytes]

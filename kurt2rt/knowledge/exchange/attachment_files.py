@@ -18,9 +18,9 @@ _DEVICE = re.compile(r"(con|prn|aux|nul|(com|lpt)[0-9])(\..*)?", re.IGNORECASE)
 
 
 def unsafe_reason(sizes: Mapping[str, int]) -> str:
-    """Return why files of these names and sizes in bytes are refused, in a few words; empty if they are safe.
+    """Return why the files of a package or a run must not be unpacked, in a few words; empty if they are safe.
 
-    Their author may mean harm: no name may lead out of the folder of the extraction.
+    `sizes`: size in bytes by name. Their author may mean harm: no name may lead out of the folder of the extraction.
     """
     if len(sizes) > MOST_FILES:
         return f"holds {len(sizes)} files, {MOST_FILES} are taken at most"

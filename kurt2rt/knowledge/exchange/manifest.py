@@ -60,7 +60,7 @@ def read_manifest(content: Mapping[str, Any]) -> Manifest:
 
 
 def require_times(lessons: Iterable[JournalEntry]) -> None:
-    """Raise ValueError unless each lesson has a stamp with a time zone."""
+    """Raise ValueError unless each lesson of a package has a stamp with a time zone."""
     for number, lesson in enumerate(lessons, start=1):
         try:
             whole = datetime.fromisoformat(lesson.stamped_at).tzinfo is not None

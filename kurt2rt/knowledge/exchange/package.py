@@ -63,7 +63,7 @@ class KnowledgePackage:
 
 @dataclass(frozen=True, slots=True)
 class ImportResult:
-    """Imported knowledge, and the settings that differ from those it was exported with."""
+    """Result of `import_knowledge`: the package, and the settings that differ here from its own."""
 
     package: KnowledgePackage
     differing_settings: tuple[str, ...]

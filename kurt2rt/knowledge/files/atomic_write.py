@@ -17,7 +17,7 @@ _LONGEST_PART = 32
 
 @dataclass(frozen=True, slots=True)
 class SavedCopy:
-    """Name, size and hash of a file that was saved for a teacher."""
+    """File that was saved for a teacher, as the answer names it; `/file` reads it by its name."""
 
     name: str
     """File name, without its folder."""

@@ -24,7 +24,7 @@ _WEAK = 1.2
 
 
 def compute_layout(network: RlaNetwork) -> Places:
-    """Return places, at least APART from each other, by RLA id.
+    """Return the place in a drawing of each RLA of a network, by id, at least APART from each other.
 
     Known places of the RLAs are kept; otherwise the edges make the layout.
     """
@@ -71,7 +71,7 @@ def _packed(parts: list[Places]) -> Places:
 
 
 def span(places: Places) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return (lowest, highest) of x, and of y, of at least one place."""
+    """Return the extent of a layout, (lowest, highest) of x and of y; it has at least one place."""
     xs, ys = [x for x, _ in places.values()], [y for _, y in places.values()]
     return (min(xs), max(xs)), (min(ys), max(ys))
 

@@ -11,7 +11,7 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 @dataclass(frozen=True, slots=True)
 class KnowledgeBinding:
-    """The world that knowledge belongs to; in another one its conditions mean nothing."""
+    """Features and task that a knowledge file is bound to; with others its conditions mean nothing."""
 
     feature_hash: str
     """Fingerprint of situation definition, sensor order and kind of robot, `SituationDefinition.hash`."""

@@ -11,7 +11,7 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 @dataclass(frozen=True, slots=True)
 class JournalEntry:
-    """A lesson to be written, or as a recording or package holds it."""
+    """Lesson to be appended to the journal, with the time at which it was given."""
 
     event: TeachingEvent
     stamped_at: str
@@ -20,7 +20,7 @@ class JournalEntry:
 
 @dataclass(frozen=True, slots=True)
 class StoredEntry:
-    """A lesson that stands in the journal."""
+    """Lesson as a row of the journal: its number there, and the time at which it was given."""
 
     sequence: int
     """1, 2, 3 ... without gaps, in the order of writing."""
@@ -43,7 +43,7 @@ class Receipt:
 
 
 def checksum(command_id: str, stamped_at: str, text: str) -> int:
-    """Return the CRC-32 of a row.
+    """Return the CRC-32 of a row, which its reader compares.
 
     A worn flash disk may turn one digit into another, which SQLite does not notice.
     """

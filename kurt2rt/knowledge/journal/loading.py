@@ -24,7 +24,7 @@ from kurt2rt.platform.durable_files import make_folder
 
 @dataclass(frozen=True, slots=True)
 class OpenedKnowledge:
-    """A journal open for teaching, and what it holds already."""
+    """Journal that is open for teaching, with the lessons and statistics that it holds already."""
 
     journal: Journal
     entries: tuple[StoredEntry, ...]

@@ -25,7 +25,7 @@ CREATE TABLE answer_delay (
 
 
 class TableChange(NamedTuple):
-    """SQL statement, and the rows that it is executed for."""
+    """SQL statement of a checkpoint, and the rows that it is executed for."""
 
     statement: str
     rows: Sequence[tuple[float | str | bytes, ...]]

@@ -31,7 +31,10 @@ def require_no_robot(path: Path) -> None:
 
 
 def new_origin(kind: str, teacher: str) -> Origin:
-    """Return the origin of an event from outside: no robot runs, so its tick is 0; its phase is that of corrections."""
+    """Return the origin of an undo or redo that a user makes in a file, while no robot runs on it.
+
+    Its tick is 0, its phase that of corrections. `kind`: first part of the new command id.
+    """
     return Origin(f"{kind}-{uuid.uuid4().hex}", teacher, Phase.CORRECTIONS, tick=0)
 
 

@@ -14,7 +14,7 @@ _MERGES = re.compile(rf"(merge-[0-9a-f]{{8}}{DERIVED})*")
 
 
 class LessonKey(NamedTuple):
-    """Key of a lesson in any file, whatever its command id and the id of its RLA there."""
+    """Key by which a merge knows the same lesson in two files, whatever its ids are there."""
 
     content: str
     about: str

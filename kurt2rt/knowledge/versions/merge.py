@@ -26,7 +26,7 @@ from kurt2rt.knowledge.versions.lesson_identity import first_command_id, lesson_
 
 @dataclass(frozen=True, slots=True)
 class MergeResult:
-    """Lessons that a merge brought, or would bring."""
+    """Lessons that a merge took from another knowledge file, or would take in a dry run."""
 
     merge_id: str
     """Id under which all of them can be undone."""

@@ -22,7 +22,7 @@ from kurt2rt.knowledge.versions.editing import append_with_values, new_origin, o
 
 @dataclass(frozen=True)
 class UndoPlan:
-    """An undo or redo that is possible, and not made yet."""
+    """Checked undo or redo in a knowledge file that can be previewed and then written by `apply_plan`."""
 
     path: Path
     changes: tuple[LessonUndone | LessonRedone, ...]

@@ -38,7 +38,10 @@ def difference(counter: int, before: int) -> int:
 
 
 class Lines:
-    """One end's lines on a port, ending with LF or CR LF: damaged ones are counted as junk, own ones are numbered."""
+    """Converter between messages and lines on a port, for one end; a line ends with LF or CR LF.
+
+    Damaged lines are counted as junk, own ones are numbered.
+    """
 
     def __init__(self, port: BytePort, first_number: int = 0) -> None:
         self.port = port

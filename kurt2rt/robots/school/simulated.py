@@ -90,7 +90,10 @@ class SchoolElectronics:
 
 
 class MemoryLine(InstantLink):
-    """Line in memory with both ends (simbridge.link_simulation.PairedLink)."""
+    """Serial line in memory between the runtime's driver and a simulated school robot.
+
+    It is a simbridge.link_simulation.PairedLink.
+    """
 
     def __init__(self, settings: RobotSettings) -> None:
         self.port, self._robot_port = MemoryPort.pair()

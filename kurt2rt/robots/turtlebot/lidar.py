@@ -93,5 +93,8 @@ def distances_m(world: WorldSettings, pose: Pose, headings_rad: NDArray[np.float
 
 
 def lidar_of(robot: RobotSettings, world: World, noise: Noise, build: Noise) -> Lidar:  # noqa: ARG001 - all are alike
-    """Return the lidar of a base in a world (simbridge.simulated_robot.MakeSensors)."""
+    """Return the simulated lidar of a base in a world, in place of infra-red sensors.
+
+    It is a simbridge.simulated_robot.MakeSensors.
+    """
     return Lidar(require_turtlebot(robot), world, noise)

@@ -25,7 +25,7 @@ _HANGS = f"the lidar hangs, its scans stayed equal while the wheels drove {_HANG
 
 
 class TurtlebotLink:
-    """Link over topics; lost while nothing is connected."""
+    """Runtime's link to a base over ROS 2 topics; without a connection it counts as lost."""
 
     remedy = "check the network, the bridge or router, and the robot's bringup"
     unconfirmed = 0

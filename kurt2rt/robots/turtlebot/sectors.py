@@ -8,7 +8,7 @@ from kurt2rt.ros.messages import LaserScan
 
 
 class Sectors:
-    """Reduction of scans to counts, in the order of the sensor table."""
+    """Converter of laser scans to readings in counts, one for each sector of the sensor table."""
 
     def __init__(self, settings: TurtlebotSettings) -> None:
         headings = [sensor.heading_deg for sensor in settings.infrared.sensors]

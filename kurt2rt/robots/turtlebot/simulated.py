@@ -116,7 +116,10 @@ class TurtlebotElectronics:
 
 
 class LocalLink(InstantLink):
-    """Topics in memory with both ends (simbridge.link_simulation.PairedLink)."""
+    """Topics in memory between the runtime's driver and a simulated base.
+
+    It is a simbridge.link_simulation.PairedLink.
+    """
 
     def __init__(self, settings: RobotSettings) -> None:
         """Make the topics of a base. Raises config.settings.SettingsError for another kind of robot."""

@@ -10,7 +10,7 @@ from kurt2rt.runs.explain.facts import LevelFacts, RlaFacts
 
 @dataclass(frozen=True, slots=True)
 class FeatureShare:
-    """Share of one feature in the distance to a condition."""
+    """Share of one feature in the distance from a situation to an RLA's condition, with both values."""
 
     name: str
     here: float
@@ -22,7 +22,7 @@ class FeatureShare:
 
 @dataclass(frozen=True, slots=True)
 class FeatureContrast:
-    """Contribution of one feature to the comparison of two RLAs."""
+    """Part of one feature in the answer why one RLA is nearer to a situation than another one."""
 
     name: str
     here: float

@@ -20,7 +20,7 @@ Names = Annotated[tuple[Title, ...], UpTo(MOST_FEATURES)]
 
 @dataclass(frozen=True, slots=True)
 class LessonFact:
-    """One lesson about an RLA, undone or not."""
+    """Lesson about an RLA, for an explanation: its words, teacher and time, and whether it stands."""
 
     text: Line
     """Lesson in words, such as: RLA 17 corrected: forward instead of spin_left."""
@@ -37,7 +37,7 @@ class LessonFact:
 
 @dataclass(frozen=True, slots=True)
 class RlaFacts:
-    """One RLA: its action, its lessons and its usage."""
+    """Facts on one RLA of an explained decision: action, distance, lessons, uses and rewards."""
 
     rla_id: Number
     title: Title
@@ -65,7 +65,7 @@ class RlaFacts:
 
 @dataclass(frozen=True, slots=True)
 class LevelFacts:
-    """Match of one level of the robot in one tick."""
+    """Facts on one level in one tick: its situation, and the RLAs that were compared with it."""
 
     level: Title
     behaviour: Title
@@ -130,7 +130,7 @@ class LevelFacts:
 
 @dataclass(frozen=True, slots=True)
 class ContactFacts:
-    """Remembered obstacle that an action would meet."""
+    """Remembered obstacle that an action would meet, as a cause of the robot's doubt."""
 
     action: Title
     within_s: Time
@@ -160,7 +160,7 @@ class DoubtFacts:
 
 @dataclass(frozen=True, slots=True)
 class DecisionFacts:
-    """Decision of one tick with the facts it rested on."""
+    """Facts on the decision of one tick, from which page, terminal and `kurt2rt why` explain it."""
 
     tick: Number
     now_s: Time

@@ -36,7 +36,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class SensorMark:
-    """Mark at the distance of one sensor's counterfactual reading."""
+    """Mark on a sensor's ray in the top view: the reading at which the robot would decide otherwise."""
 
     sensor: str
     distance_m: float
@@ -46,7 +46,7 @@ class SensorMark:
 
 @dataclass(frozen=True, slots=True)
 class SensorView:
-    """Situation to draw; readings by sensor names, of which any may be absent."""
+    """Readings, marks and motion to draw in the top view of the robot; any sensor may be absent."""
 
     counts: Mapping[str, float]
     averages: Mapping[str, float]

@@ -30,7 +30,7 @@ MOST_SAMPLES = 5000
 
 
 class Kind(StrEnum):
-    """Kind of an interval of a run: who or what moved the robot, or that it stood."""
+    """Kind of a stretch of a run: the robot drove by RLAs, was led, asked, or stood for another reason."""
 
     DRIVES = "drives"
     """Driving by RLAs."""
@@ -43,7 +43,7 @@ class Kind(StrEnum):
 
 @dataclass(slots=True)
 class Stretch:
-    """Consecutive ticks of one activity; it grows while the run is read."""
+    """Consecutive ticks of a run in which the robot did one thing; it grows while the run is read."""
 
     kind: Kind
     what: str
@@ -68,7 +68,7 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """Lesson, alarm or other event of a run, at the time of its tick."""
+    """Lesson, alarm or other event of a run that its timeline marks, at the time of its tick."""
 
     at_s: float
     kind: str
@@ -78,7 +78,7 @@ class Note:
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """Values of one tick for curves."""
+    """Values of one tick for the curves of a timeline: speeds, place, and nearness of the RLA."""
 
     at_s: float
     share: float
@@ -98,7 +98,7 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class Timeline:
-    """Stretches, notes and samples of a run or a part of it."""
+    """Course of a recorded run or a part of it, for tables and pictures: stretches, notes and curves."""
 
     stretches: tuple[Stretch, ...]
     notes: tuple[Note, ...]

@@ -28,7 +28,10 @@ Column = NDArray[Any]
 
 @dataclass(frozen=True, slots=True)
 class Feature:
-    """Type of one column: numpy's name of it, and the names of the values of a frame (None: one value)."""
+    """Type of one column of a data set: numpy's name of it, and the names of a frame's values.
+
+    Without names a frame has one value.
+    """
 
     dtype: str
     names: tuple[str, ...] | None = None

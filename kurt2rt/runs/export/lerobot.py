@@ -42,7 +42,7 @@ _QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
 
 @dataclass(slots=True)
 class ExportedRun:
-    """One run in the data set."""
+    """Result of one run's export to a data set: its numbers of episodes and frames."""
 
     run: str
     episodes: int = 0

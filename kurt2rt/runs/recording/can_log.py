@@ -43,7 +43,7 @@ class FrameWriter(Protocol):
 
 
 class LogFile:
-    """New file in one of python-can's formats (FrameWriter)."""
+    """Log file of CAN frames in a format of python-can, chosen by its ending (FrameWriter)."""
 
     def __init__(self, path: Path) -> None:
         """Create the file, numbered if the name is taken. Raises RecordingError, OSError."""

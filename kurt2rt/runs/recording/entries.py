@@ -16,7 +16,7 @@ from kurt2rt.core.tick_record import TickRecord
 
 
 class MatchEntry(NamedTuple):
-    """Nearest RLA and runner-up by their ids."""
+    """Recorded match: a level's nearest RLA and runner-up by their ids, with distances and R."""
 
     rla_id: int
     distance: float
@@ -27,7 +27,7 @@ class MatchEntry(NamedTuple):
 
 
 class MidEntry(NamedTuple):
-    """Command of the mid level, with the fields of MidDecision in their order."""
+    """Recorded command of the mid level, with the fields of MidDecision in their order and RLAs by ids."""
 
     behaviour: str
     rla_id: int | None
@@ -38,7 +38,7 @@ class MidEntry(NamedTuple):
 
 
 class DecisionEntry(NamedTuple):
-    """Decision, with the fields of Decision in their order."""
+    """Recorded decision, with the fields of Decision in their order and RLAs by their ids."""
 
     wheel_speeds: WheelSpeeds
     cause: DecisionCause
@@ -54,7 +54,7 @@ class DecisionEntry(NamedTuple):
 
 
 class OpinionEntry(NamedTuple):
-    """Appraisal of the critic, with the fields of Opinion in their order."""
+    """Recorded opinion of the critic, with the fields of Opinion in their order and its RLA by its id."""
 
     value: int
     appraisal: str
@@ -66,7 +66,7 @@ class OpinionEntry(NamedTuple):
 
 
 class ResultEntry(NamedTuple):
-    """Recorded answer to a command."""
+    """Recorded answer to a teacher's command."""
 
     command_id: str
     accepted: bool
@@ -79,7 +79,7 @@ class ResultEntry(NamedTuple):
 
 
 class TickEntry(NamedTuple):
-    """One tick: inputs of a replay, and the results it must reproduce bit for bit."""
+    """Recorded tick: the inputs that a replay needs, and the results that it must reproduce bit for bit."""
 
     # What went in.
     number: int

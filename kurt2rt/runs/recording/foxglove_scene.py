@@ -55,7 +55,7 @@ SCAN_RAYS = 360 // SCAN_STEP_DEG
 
 
 class Ray(NamedTuple):
-    """Line of sight of one sensor; x forward, y left, in m."""
+    """Line from a sensor to the obstacle that it reads, or to its range; x forward, y left, in m."""
 
     from_x_m: float
     from_y_m: float
@@ -66,7 +66,7 @@ class Ray(NamedTuple):
 
 
 class SensorRays:
-    """Conversion of infra-red counts to rays, and to a scan with equal angles."""
+    """Converter of infra-red counts to rays of the sensors, and to a scan with equal angles."""
 
     def __init__(self, infrared: InfraredSettings) -> None:
         self._infrared = infrared
@@ -124,7 +124,7 @@ def transforms(moves: Sequence[tuple[str, str, PlanePose]], time_ns: int) -> Fra
 
 
 class RobotScene:
-    """Builder of scans and scenes for one robot."""
+    """Builder of one robot's messages for Foxglove: the readings as a laser scan, the robot as a scene."""
 
     def __init__(self, settings: RobotSettings) -> None:
         self._length_m = settings.geometry.outline_length_m

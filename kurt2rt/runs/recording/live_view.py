@@ -9,7 +9,7 @@ LOOPBACK = "127.0.0.1"
 
 
 class LiveView:
-    """Read-only server of all that is logged in a context."""
+    """Read-only server by which Foxglove shows a run live: all that is logged in a context."""
 
     def __init__(
         self, context: Context, host: str, port: int, name: str, opened: Callable[["LiveView"], None] = lambda _: None

@@ -31,7 +31,7 @@ _NS_PER_S = 1_000_000_000
 
 
 class TickNote(NamedTuple):
-    """Note of one tick on its way to the recorder's thread."""
+    """Record of a tick that waits for the recorder's thread, with the truth on a simulated robot."""
 
     record: TickRecord
     time_ns: int
@@ -43,13 +43,13 @@ class TickNote(NamedTuple):
 
 
 class QuestionNote(NamedTuple):
-    """Question that begins; its text is `str(question)`."""
+    """Question of the robot that waits for the recorder's thread; its text is `str(question)`."""
 
     question: object
 
 
 class HealthNote(NamedTuple):
-    """Health report of the program, in plain values."""
+    """Health report that waits for the recorder's thread, in plain values."""
 
     report: Mapping[str, Any]
 
@@ -58,7 +58,7 @@ Note = TickNote | QuestionNote | HealthNote | Acknowledgement
 
 
 class NoteLog:
-    """Logger of notes to the topics of one destination, at the time of the newest tick."""
+    """Logger of a recorder's notes to one destination, a file or the live view, at the newest tick's time."""
 
     def __init__(self, topics: Topics, began_ns: int) -> None:
         """`began_ns`: time since 1970 of notes before the first tick."""

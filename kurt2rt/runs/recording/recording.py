@@ -29,7 +29,7 @@ LAYOUT = SHIPPED_DIR / "foxglove" / "kurt2.json"
 
 @dataclass(frozen=True, slots=True)
 class RunContext:
-    """Circumstances at the start of a run."""
+    """State of program and robot at the start of a run, recorded so that a replay begins alike."""
 
     boot: str
     """Identifier of this start of the program, hexadecimal."""
@@ -46,7 +46,7 @@ class RunContext:
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """Destination and limits of the recordings of a program."""
+    """Destination and limits of a program's recordings; it opens a recorder for each run."""
 
     recordings: Path | None
     """Folder of all runs; None: no files."""

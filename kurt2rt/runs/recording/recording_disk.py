@@ -14,7 +14,7 @@ _NO_LOCKS = frozenset({errno.ENOLCK, errno.EOPNOTSUPP, errno.EBADF, errno.ENOSYS
 
 
 class WritableFile(Protocol):
-    """New file of a recording."""
+    """File of a recording that its thread writes at offsets; tests put failing ones in its place."""
 
     def write_at(self, offset: int, data: bytes | bytearray) -> None:
         """Write all of `data` at `offset` bytes. Raises OSError; part of it may be written then."""
@@ -30,7 +30,7 @@ class WritableFile(Protocol):
 
 
 class Disk(Protocol):
-    """Disk that holds recordings. Every call may block."""
+    """Disk that holds recordings; tests put failing ones in its place. Every call may block."""
 
     def make_folder(self, path: Path) -> None:
         """Create a folder and its parents. Raises OSError; FileExistsError if it exists."""
@@ -46,7 +46,7 @@ class Disk(Protocol):
 
 
 class RealFile:
-    """File of a real disk (WritableFile)."""
+    """File of a recording on a disk of this machine (WritableFile)."""
 
     def __init__(self, path: Path) -> None:
         self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o644)
@@ -69,7 +69,7 @@ class RealFile:
 
 
 class RealDisk:
-    """Disk of this machine (Disk)."""
+    """Disk of this machine, on which recordings are written (Disk)."""
 
     def make_folder(self, path: Path) -> None:
         """Create a folder and its parents. Raises OSError; the folder does not exist then."""

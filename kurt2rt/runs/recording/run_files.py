@@ -18,9 +18,9 @@ _IN_EACH = (ROBOT, TASK)
 
 
 class RunFiles:
-    """Files for all that is logged in a context. Calls may block on the disk and never raise.
+    """Segment files of one run, which get all that is logged in a context, within the budget of disk space.
 
-    After an error each `poll` tries again; Segment states the cost.
+    Calls may block on the disk and never raise. After an error each `poll` tries again; Segment states the cost.
     """
 
     def __init__(

@@ -19,7 +19,7 @@ RUN_METADATA, SEGMENT_METADATA = "run", "segment"
 
 @dataclass(frozen=True, slots=True)
 class RunHead:
-    """First entry of a recording: versions, task, robot and the state in which the run began."""
+    """First entry of a recording: versions, task and robot, and the state from which a replay begins."""
 
     kurt2rt: str
     """Version of the program."""
@@ -77,7 +77,7 @@ def decode_head(metadata: dict[str, str]) -> RunHead:
 
 @dataclass(frozen=True, slots=True)
 class RecordedRun:
-    """Properties of one run that are fixed at its start."""
+    """All that is known of a run at its start, which each of its segment files gets."""
 
     name: str
     """Name of the run's folder."""

@@ -15,7 +15,10 @@ _MEDIA_TYPES = {".json": "application/json", ".jsonl": "application/jsonl", ".ya
 
 
 class MemoryFile:
-    """Append-only file in memory for the SDK. It never fails, so the SDK sees no disk errors."""
+    """Append-only buffer for the SDK of MCAP, which `Segment` writes to the disk.
+
+    It never fails, so the SDK sees no disk errors.
+    """
 
     def __init__(self) -> None:
         self._bytes = bytearray()
@@ -44,7 +47,7 @@ class MemoryFile:
 
 
 class Segment:
-    """New file for all that is logged in a context from now on.
+    """File of a recording that is being written: it gets all that is logged in a context from now on.
 
     Data since the last successful `save` stays in memory and is written again by the next one. A failed write or fsync,
     which leaves the disk's content undefined, thus loses nothing.

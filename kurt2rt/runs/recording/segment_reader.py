@@ -33,7 +33,7 @@ _MESSAGE_HEAD = struct.Struct("<HIQQ")
 
 
 class LoggedMessage(NamedTuple):
-    """Message of a recording, with its topic, time and schema."""
+    """Message of a segment file, not decoded, with its topic, time and schema."""
 
     topic: str
     time_ns: int
@@ -45,14 +45,14 @@ class LoggedMessage(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class SegmentHead:
-    """Metadata and attachments before the first message."""
+    """Head of a segment file: metadata of the run, and attached settings and knowledge."""
 
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     attachments: dict[str, bytes] = field(default_factory=dict)
 
 
 class SegmentReader:
-    """Reader of one file; each call starts at its beginning."""
+    """Reader of one segment file, also of a truncated one; each call starts at its beginning."""
 
     def __init__(self, path: Path) -> None:
         self.path = path

@@ -139,7 +139,10 @@ def _fields_of(name: str) -> type[BaseModel]:
 
 
 def encode_command(command: Input) -> dict[str, Any]:
-    """Return a JSON object: the name of the class as `is`, then the fields."""
+    """Return a command as a JSON object for `decode_command`.
+
+    It has the name of the class as `is`, then the fields.
+    """
     name = type(command).__name__
     own = {each.name: getattr(command, each.name) for each in fields(command)}
     return {"is": name, **_finite(_fields_of(name).model_construct(**own).model_dump(mode="json"))}

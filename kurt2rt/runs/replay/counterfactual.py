@@ -28,7 +28,7 @@ AnswerSource = Callable[[TickRecord, Runtime], PolicyAnswers]
 
 
 class DifferingStretch(NamedTuple):
-    """Consecutive ticks with the same recorded answer and the same different one."""
+    """Consecutive ticks of a run in which other knowledge gives one other answer to one recorded answer."""
 
     level: str
     from_s: float
@@ -44,7 +44,7 @@ class DifferingStretch(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Counterfactual:
-    """Decisions that would have differed."""
+    """Numbers and stretches of a run's ticks in which other knowledge would have decided otherwise."""
 
     ticks: int
     """Compared ticks."""

@@ -32,7 +32,7 @@ from kurt2rt.runtime import Runtime, empty_system
 
 
 class PolicyAnswer(NamedTuple):
-    """Answer to a situation, before minimum times and the guard."""
+    """Answer of a level's RLAs to a situation, before minimum times and the guard."""
 
     rla: Rla | None
     """RLA that answers; None if none is near enough."""
@@ -55,7 +55,7 @@ class PolicyAnswer(NamedTuple):
 
 
 class PolicyAnswers(NamedTuple):
-    """Answers of all levels in one tick."""
+    """Answers of basic and mid level to the situation of one tick, to be compared with other knowledge's."""
 
     basic: PolicyAnswer
     mid: PolicyAnswer | None
@@ -63,7 +63,7 @@ class PolicyAnswers(NamedTuple):
 
 
 class CounterfactualPolicy:
-    """Knowledge that decides on the situations of a run, without acting or learning."""
+    """Other knowledge that answers the situations of a replayed run, without acting or learning."""
 
     def __init__(self, run: Run, events: Iterable[TeachingEvent], statistics: Statistics | None = None) -> None:
         """Build the policy with the run's own settings.

@@ -23,7 +23,7 @@ from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 
 
 class ReplayedTick(NamedTuple):
-    """Recorded tick and its replay."""
+    """Tick as it was recorded (`entry`), and as the replay decided it again (`record`)."""
 
     entry: TickEntry
     record: TickRecord
@@ -106,7 +106,10 @@ def empty_run_error(run: Run) -> RecordingError:
 
 
 class ReplayEnvironment:
-    """Robot, Clock and LessonKeeper in one object, because they share the current tick."""
+    """Environment of a replayed tick, which gives it what was recorded: robot, clock and event store in one.
+
+    They are one object, because they share the current tick.
+    """
 
     def __init__(self) -> None:
         self.entry: TickEntry | None = None

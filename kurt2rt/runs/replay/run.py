@@ -34,7 +34,7 @@ DecodedT = TypeVar("DecodedT")
 
 @dataclass(frozen=True, slots=True)
 class RunSource:
-    """Access to the ticks of a recorded run; each call reads again from its beginning."""
+    """Functions by which a `Run` reads its ticks from files; each call reads again from the beginning."""
 
     ticks: Callable[[], Iterator[TickEntry]]
     truncated: Callable[[], str] = str
@@ -48,7 +48,7 @@ class RunSource:
 
 
 class Run:
-    """Program run from start to end: its initial state and its ticks."""
+    """Recorded run of the robot program: settings and knowledge at its start, and its ticks."""
 
     def __init__(
         self, name: str, head: RunHead, attachments: Mapping[str, bytes], source: RunSource, *, partial: bool = False

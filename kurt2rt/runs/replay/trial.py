@@ -26,7 +26,7 @@ _NEWEST = 20
 
 @dataclass(frozen=True)
 class RecentRuns:
-    """Recorded runs for a trial."""
+    """Recorded runs on which knowledge can be tried, because it fits their robot and task."""
 
     runs: tuple[Run, ...]
     left_out: tuple[str, ...]

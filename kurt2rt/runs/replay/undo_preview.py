@@ -31,7 +31,7 @@ _Knowledge = tuple[tuple[TeachingEvent, ...], Statistics]
 
 @dataclass(frozen=True, slots=True)
 class TrialResult:
-    """Effect of a change on one run."""
+    """Decisions of one recorded run that an undo or redo would change."""
 
     run: str
     from_s: float
@@ -41,7 +41,7 @@ class TrialResult:
 
 @dataclass(frozen=True)
 class UndoPreview:
-    """Effects of a change on recorded runs."""
+    """Decisions in recorded runs that an undo or redo would change, shown before it is done."""
 
     runs: tuple[TrialResult, ...]
     """Empty without a run to replay."""

@@ -47,7 +47,7 @@ class _Found(NamedTuple):
 
 
 class CounterGrowth:
-    """Growth of counters in the last minute."""
+    """Growth of error counters in the last minute, which tells present faults from old ones."""
 
     def __init__(self) -> None:
         self._past: deque[Mapping[str, int]] = deque([{}], maxlen=LATELY_S + 1)  # all begin at 0
@@ -86,7 +86,7 @@ class _Writes:
 
 
 class Diagnostics:
-    """Diagnosis of each report, with the time since when each trouble exists."""
+    """Finder of the troubles in each health report, which remembers since when each one lasts."""
 
     def __init__(self, settings: RobotSettings, *, tolerates_stalls: bool = False) -> None:
         """`tolerates_stalls`: whether the robot stalls with this program, so that late ticks are no trouble."""

@@ -219,7 +219,7 @@ def _finite(age_s: float) -> float | None:
 
 
 class MachineMonitor:
-    """Monitor of memory, processor and battery."""
+    """Source of the health report's part on the machine: memory, processor and battery."""
 
     def __init__(self, power: Path = _POWER) -> None:
         """`power`: folder in which the kernel lists batteries."""

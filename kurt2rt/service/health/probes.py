@@ -9,7 +9,7 @@ from hal.health import Health
 
 @dataclass(frozen=True, slots=True)
 class Probes:
-    """Parts of a program outside its runtime."""
+    """Functions and folders by which the health report reads parts of the program outside the runtime."""
 
     bus: Callable[[], Health] | None = None
     """Returns the counters of the robot's bus; None: no bus."""

@@ -16,7 +16,7 @@ from kurt2rt.service.health.probes import Probes
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """Values of the program after one tick, from which the health report is made."""
+    """Values of the program after one tick, taken in the loop; a thread makes the health report of them."""
 
     tick: int
     now_s: float

@@ -25,4 +25,4 @@ class StatusCode(TextCode):
 
 
 class StatusError(CodedError):
-    """The status of a robot program cannot be read; `where` is the path of its socket."""
+    """Status of a robot program that cannot be read; `where` is the path of its socket."""

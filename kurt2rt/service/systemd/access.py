@@ -18,7 +18,7 @@ _COPIES = Path("/etc/kurt2rt")
 
 @dataclass(frozen=True, slots=True)
 class RequiredAccess:
-    """Files and folders of the settings, without this installation and the unit's own folder."""
+    """Files and folders outside the unit's own folder that a service's user needs by its settings."""
 
     files: tuple[Path, ...] = ()
     """Absolute paths that the service reads."""
@@ -36,7 +36,7 @@ def start_command() -> tuple[str, ...]:
 
 
 def required_paths() -> tuple[Path, ...]:
-    """Return the files and folders that kurt2rt needs."""
+    """Return the files and folders of this installation that a service must be able to read."""
     return (Path(start_command()[0]), Path(sys.prefix), Path(sys.base_prefix), SHIPPED_DIR)
 
 

@@ -16,7 +16,7 @@ CommandRunner = Callable[[Sequence[str]], None]
 
 @dataclass(frozen=True, slots=True)
 class InstallPaths:
-    """Folders of systemd that the files of a unit go to."""
+    """Folders of systemd into which a unit's files are installed; tests give others."""
 
     units: Path = Path("/etc/systemd/system")
     users: Path = Path("/etc/sysusers.d")

@@ -23,7 +23,7 @@ _PLAIN = re.compile(r"[\w@+,./:=-]+")
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """Text of a unit, and of the file that makes its user."""
+    """Texts of the files that make a systemd service of kurt2rt, and the user that it runs as."""
 
     name: str
     """Name of the unit and of its user."""

@@ -10,7 +10,7 @@ _OTHER_NAME = "give another --name"
 
 
 class UnitCode(TextCode):
-    """Condition that keeps a unit from being made or installed."""
+    """Condition that keeps a unit from being made or installed, with its text and remedy."""
 
     BAD_NAME = ("bad name", "cannot name a unit and its user", "give up to 31 of a-z, 0-9 and -, a letter first")
     UNPRINTABLE = ("unprintable", "cannot stand in a unit", "give a path without control characters")
@@ -47,4 +47,4 @@ class UnitCode(TextCode):
 
 
 class UnitError(CodedError):
-    """A unit cannot be made or installed; `where` names the file, user or setting."""
+    """Unit that cannot be made or installed; `where` names the file, user or setting."""

@@ -11,7 +11,7 @@ from kurt2rt.core.outcome_text import Surface, fields_of, text_of
 
 
 class NoAnswer(StrEnum):
-    """Kind of a missing answer."""
+    """Code for why a request got no usable answer from the robot; some leave open whether it counted."""
 
     NO_STATE = "no state"
     """No state came, so nothing was sent."""
@@ -111,13 +111,13 @@ _WHY: Final = {
 
 
 def local_refusal(code: RefusalCode, **fields: Any) -> Answer:
-    """Return the refusal of a command that was not sent to the robot, or was withdrawn."""
+    """Return the refusal of a command that this device itself withdrew or did not send."""
     outcome = Outcome.of(code, **fields)
     return Answer(False, _WHY[code], text_of(outcome), -1, outcome=outcome)
 
 
 class RefusedError(UserError):
-    """The robot refuses a command or a file that the caller cannot do without."""
+    """Refusal of a command or a file without which the caller cannot go on."""
 
     def __init__(self, what: str, answer: Answer | None = None) -> None:
         """Keep the robot's `answer`, if it is the robot that refuses."""
@@ -138,7 +138,10 @@ def _outcome_in(body: Mapping[str, Any]) -> Outcome | None:
 
 
 def answer_of(code: str, body: Mapping[str, Any]) -> Answer:
-    """Return the answer in the decoded body of a response; `code` is CoAP's, such as "4.09 Conflict"."""
+    """Return the answer of the robot from the decoded body of its response.
+
+    `code`: CoAP's, such as "4.09 Conflict"; it tells whether the request was accepted.
+    """
     accepted = code.startswith("2.") and body.get("ok", True) is not False
     tick, text, why = body.get("t"), body.get("text"), body.get("why")
     return Answer(

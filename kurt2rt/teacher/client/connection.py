@@ -30,7 +30,7 @@ _STATE = "/state"
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """Parts of an open client: requests out, states in, and the deadman stream."""
+    """Parts of an open client that share one socket: requests, stops, and the stream of presses."""
 
     name: str
     """Name of the device, and so of the teacher."""
@@ -132,7 +132,10 @@ def _read_device(folder: Path) -> Device:
 
 
 async def subscribe(requests: OscoreRequests, stream: StateStream, now: Callable[[], float]) -> None:
-    """Fill `stream` until cancelled; `now` is a monotonic clock in seconds."""
+    """Observe the robot's states and fill `stream` with them until cancelled; observe again after a silence.
+
+    `now`: monotonic clock in s.
+    """
     while True:
         before, began_s, newest = stream.count, now(), -2
 

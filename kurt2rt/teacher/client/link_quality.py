@@ -10,7 +10,10 @@ _ANSWERS = 100
 
 @dataclass(frozen=True, slots=True)
 class LinkQuality:
-    """Measurement over the last seconds. Only a device in charge sends a stream, so only it has round trips."""
+    """Quality of the link to the robot over the last seconds.
+
+    Only a device in charge sends a stream, so only it has round trips.
+    """
 
     rtt_ms: float | None
     """Round trip, median of the last 50 that were answered; None before the first."""
@@ -21,7 +24,7 @@ class LinkQuality:
 
 
 class LinkMeter:
-    """Meter of the link to the robot: round-trip times, and the share of messages that were answered."""
+    """Meter of the link to the robot, by the answers to the stream of presence and presses."""
 
     def __init__(self) -> None:
         self._round_trips_s: deque[float] = deque(maxlen=_ROUND_TRIPS)

@@ -134,7 +134,7 @@ class ManualDrive:
         self.refusal = refusal
 
     def beat(self) -> None:
-        """Send the message that is due; call it every BEAT_S."""
+        """Send the message that is due, of the press or of presence; call it every BEAT_S."""
         self._drop_timed_out()
         state = self._fresh_state()
         press = self._press
@@ -195,7 +195,7 @@ class ManualDrive:
 
 
 class PressHandle:
-    """One press. It is sent 50 times a second; an ended press stays ended."""
+    """Handle of one press by a program. It is sent 50 times a second; an ended press stays ended."""
 
     def __init__(self, drive: ManualDrive) -> None:
         self._drive = drive
@@ -236,7 +236,7 @@ class PressHandle:
 
 
 class ManualDriveHandle(PressHandle):
-    """Press of manual drive, from `TeacherClient.driving`."""
+    """Handle of a drive by hand, from `TeacherClient.driving`; the drive ends with a stop."""
 
     def set(self, left_m_s: float, right_m_s: float) -> bool:
         """Set the speeds; return whether the press is on. Raises WireError for speeds out of range."""
@@ -244,7 +244,7 @@ class ManualDriveHandle(PressHandle):
 
 
 class HoldHandle(PressHandle):
-    """Press of a held action, from `TeacherClient.hold`."""
+    """Handle of a held action, by which a teacher corrects, from `TeacherClient.hold`."""
 
     def set(self, action: str) -> bool:
         """Hold an action, at first or instead of another one; return whether the press is on. Raises WireError."""

@@ -28,7 +28,10 @@ _Read = TypeVar("_Read")
 
 
 class RequestSender:
-    """Sender of requests to one robot. Each method raises NoAnswerError if no answer comes in time."""
+    """Sender of requests to one robot, each until it is answered.
+
+    Each method raises NoAnswerError if no answer comes in time.
+    """
 
     def __init__(self, requests: OscoreRequests, stream: StateStream, patience_s: float) -> None:
         """`patience_s` is the time to wait for an answer, in seconds."""

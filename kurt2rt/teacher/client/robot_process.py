@@ -25,7 +25,7 @@ _KNOWLEDGE = "robot.knowledge"
 
 
 class RobotProcess:
-    """Run `kurt2rt run` in the background, on a free UDP port, with keys and knowledge in a folder of its own.
+    """Process of `kurt2rt run` in the background, on a free UDP port, with keys and knowledge of its own.
 
     with RobotProcess() as robot, Teacher(robot.device) as teacher:
         ...

@@ -90,7 +90,10 @@ class StateStream:
         self._wake()
 
     def tick_before(self, ticks: int) -> int | None:
-        """Return the tick that lies `ticks` of driving before the newest of them; None if none was seen."""
+        """Return the tick that lies `ticks` of driving before the robot drove last.
+
+        Returns None if no state showed it driving.
+        """
         if not self._drove:
             return None
         newest = self._drove[-1][1]

@@ -16,7 +16,10 @@ from kurt2rt.teacher.client.request_sender import RequestSender
 
 
 class StopSender:
-    """Stops of one device, and the moving commands that they end."""
+    """Sender of one device's stops, which first withdraw the commands that would move the robot.
+
+    A stop without an answer is sent on.
+    """
 
     def __init__(self, sender: RequestSender, tasks: anyio.abc.TaskGroup) -> None:
         """Go on sending an unanswered stop in `tasks`."""

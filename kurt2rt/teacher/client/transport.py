@@ -51,7 +51,7 @@ class _Registering(TransportTuning):  # type: ignore[misc]  # Any
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """Authenticated answer of the robot."""
+    """Answer of the robot to one request, decrypted and authenticated."""
 
     code: str
     """Code such as "2.04 Changed"."""
@@ -69,7 +69,7 @@ OnResponse = Callable[[Response], None]
 
 
 class Exchange:
-    """Request under way, or a lasting observation."""
+    """Handle of a request that waits for its answer, or of an observation that gets states until it ends."""
 
     def __init__(self) -> None:
         self.ended = False

@@ -12,7 +12,10 @@ from kurt2rt.teacher.page.public_address import PublicAddress
 
 
 class Access:
-    """Access rules of one device. The cookie is derived from the token, so a renewed or revoked pairing ends it."""
+    """Rules by which the page of one device accepts a visitor: token, cookie, host and origin.
+
+    The cookie is derived from the token, so a renewed or revoked pairing ends it.
+    """
 
     def __init__(
         self,

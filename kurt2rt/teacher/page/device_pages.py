@@ -33,7 +33,7 @@ _END_S = 1.0
 
 @dataclass(frozen=True, slots=True)
 class PageSite:
-    """Settings shared by the pages of all devices."""
+    """Settings shared by the pages of all devices: link to the robot, names and address of this machine."""
 
     open_link: OpenLink
     robot_place: str

@@ -21,7 +21,7 @@ _POLL_PAIRINGS_S = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Pairings:
-    """Folders of both sides of all pairings."""
+    """Folders that hold the robot's sides (`teachers`) and the devices' sides (`devices`) of all pairings."""
 
     teachers: Path
     devices: Path

@@ -21,7 +21,7 @@ Picture = Counter | None
 
 @dataclass(frozen=True, slots=True)
 class PageHeartbeat:
-    """Sign of a visible page, ten times a second."""
+    """Message of a visible page, ten times a second, with the number of the state on its screen."""
 
     picture: Picture
     at_ms: Annotated[float, Float(1e15, "ms")]
@@ -30,12 +30,12 @@ class PageHeartbeat:
 
 @dataclass(frozen=True, slots=True)
 class Hidden:
-    """The page is not visible any more."""
+    """Message of a page that is not visible any more, such as in a tab in the background."""
 
 
 @dataclass(frozen=True, slots=True)
 class Press:
-    """The deadman switch is held; 20 times a second."""
+    """Message of a page whose deadman switch is held, 20 times a second, with the wanted speeds."""
 
     press_id: Counter
     """Number of the press; grows."""
@@ -46,7 +46,7 @@ class Press:
 
 @dataclass(frozen=True, slots=True)
 class HoldPress:
-    """A button of an action is held (hold to correct); 20 times a second."""
+    """Message of a page whose button of an action is held (hold to correct), 20 times a second."""
 
     press_id: Counter
     """Number of the press, in one sequence with those of `Press`."""
@@ -56,12 +56,12 @@ class HoldPress:
 
 @dataclass(frozen=True, slots=True)
 class Release:
-    """The deadman switch, or the button of an action, was let go."""
+    """Message of a page at which the deadman switch, or the button of an action, was let go."""
 
 
 @dataclass(frozen=True, slots=True)
 class StopNow:
-    """STOP of a page, also of one without control."""
+    """Message of a page whose STOP was pressed; a page without control may send it, too."""
 
     number: Counter
     """The page's own number of this message, repeated in the answer."""
@@ -69,7 +69,7 @@ class StopNow:
 
 @dataclass(frozen=True, slots=True)
 class Why:
-    """Question for the facts of the newest decision, from any page."""
+    """Message of a page that asks why the robot decided as it did last; any page may ask."""
 
     number: Counter
     """The page's own number of this message, repeated in the answer."""
@@ -77,7 +77,7 @@ class Why:
 
 @dataclass(frozen=True, slots=True)
 class PageCommand:
-    """Command for the robot, as a page with control sent it."""
+    """Message of a page with a command for the robot, which needs control."""
 
     number: Counter
     """The page's own number of this message, repeated in the answer."""

@@ -11,7 +11,7 @@ import anyio
 
 @dataclass(frozen=True, slots=True)
 class SentState:
-    """One state of the robot, as it was sent to a page."""
+    """State that was sent to a page, by which a message of the page is dated."""
 
     boot: bytes
     tick: int
@@ -116,7 +116,7 @@ class DeadmanSwitch:
 
 
 class PageConnection:
-    """Outgoing messages of one page: the newest state of the robot, and a bounded queue of other messages."""
+    """State of one open page, and its outgoing messages: the newest state, and a bounded queue of others."""
 
     def __init__(self, number: int) -> None:
         self.number = number

@@ -9,7 +9,7 @@ _HTTPS_PORT = 443
 
 
 class PageError(UserError):
-    """The page cannot be served."""
+    """Page that cannot be served: no free TCP port, or an invalid public address."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from kurt2rt.teacher.page.own_addresses import addresses_for_phones
 
 @dataclass(frozen=True, slots=True)
 class PageAddress:
-    """Address at which a device opens its page."""
+    """Link by which a device opens its page, with the token that logs it in."""
 
     device: str
     link: str

@@ -32,7 +32,7 @@ Publish = Callable[[dict[str, Any], str], None]
 
 
 class CachedResource:
-    """Copy of one resource, with the version that it was fetched for."""
+    """Copy of one of the robot's slow answers, such as the lessons, fetched again for another version."""
 
     def __init__(
         self,

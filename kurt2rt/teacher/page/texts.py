@@ -5,7 +5,7 @@ from enum import StrEnum
 
 
 class PageNotice(StrEnum):
-    """Refusal or notice of the page's server."""
+    """Code of a refusal or notice of the page's own server, as opposed to the robot's."""
 
     NOT_IN_CONTROL = "not in control"
     NO_STATE = "no state"

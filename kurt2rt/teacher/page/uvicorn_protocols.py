@@ -11,7 +11,7 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 
 
 class ConnectionLimiter:
-    """Open connections without a cookie, at most `most`, and `per_address` of one address."""
+    """Limit on connections that have not shown a cookie: `most` in all, and `per_address` of one address."""
 
     def __init__(self, most: int = 32, per_address: int = 12) -> None:
         self._most = most

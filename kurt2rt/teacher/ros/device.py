@@ -43,7 +43,7 @@ _DIAGNOSE_S = 1.0
 
 
 class Feed:
-    """Publisher of one robot's topics."""
+    """Publisher of a robot's states on ROS 2: scan, pose, question and diagnostics."""
 
     def __init__(self, robot: ObserverClient, port: RosPort, hello: Hello, wall: Callable[[], float]) -> None:
         """Declare the topics. `wall`: clock of ROS in s since 1970. Raises RosConnectionError."""
@@ -111,7 +111,7 @@ class _Arrived(NamedTuple):
 
 
 class RosDevice:
-    """The robot in ROS 2, for as long as the client of a paired device is open."""
+    """Device that joins one robot to ROS 2, for as long as the client of its pairing is open."""
 
     def __init__(
         self,

@@ -17,7 +17,7 @@ from kurt2rt.teacher.terminal.terminal_text import format_state
 
 
 class WheelPose(NamedTuple):
-    """Pose since the device began, and the speeds of the newest step."""
+    """Dead-reckoned pose since the device began, and the speeds of the newest step, for /odom."""
 
     pose: PlanePose
     forward_m_s: float
@@ -112,7 +112,7 @@ class ScanBuilder:
 
 
 def odometry(place: WheelPose, stamp: ros.Time) -> ros.Odometry:
-    """Return pose and speeds by the encoders."""
+    """Return the robot's pose and speeds by the encoders, for /odom."""
     pose = place.pose
     return ros.Odometry(
         header=ros.Header(stamp, ODOM),
@@ -129,7 +129,7 @@ def odometry(place: WheelPose, stamp: ros.Time) -> ros.Odometry:
 
 
 def transform(pose: PlanePose, stamp: ros.Time) -> ros.TFMessage:
-    """Return the place of the robot in the odometry's frame."""
+    """Return the robot's pose in the odometry's frame, for /tf."""
     moved = ros.Transform(ros.Vector3(pose.x_m, pose.y_m, 0.0), _turned(pose.heading_rad))
     return ros.TFMessage([ros.TransformStamped(ros.Header(stamp, ODOM), BASE, moved)])
 

@@ -25,7 +25,7 @@ Work = Callable[[], Awaitable[Answer]]
 
 
 class Request(Protocol):
-    """Request of a service, to be answered once, from any thread."""
+    """Call of a ROS 2 service that waits for its answer, to be given once, from any thread."""
 
     def respond(self, success: bool, text: str) -> None:
         """Answer the caller of the service. Raises RosConnectionError."""
@@ -33,7 +33,7 @@ class Request(Protocol):
 
 
 class RosServer(RosPort, Protocol):
-    """Connection to ROS 2 that offers services, too."""
+    """Connection to ROS 2 on which services can be offered, besides topics."""
 
     def serve(self, service: Topic, on_request: Callable[[Request], None]) -> None:
         """Call `on_request` with each request, in a thread of the connection. Raises RosConnectionError."""
@@ -41,7 +41,10 @@ class RosServer(RosPort, Protocol):
 
 
 class Services:
-    """Services of one robot. Each request gets a task of its own in the loop, so that a stop overtakes the others."""
+    """ROS 2 services of one robot, such as stop, take and an action each, carried out as commands.
+
+    Each request gets a task of its own in the loop, so that a stop overtakes the others.
+    """
 
     def __init__(self, robot: TeacherClient, port: RosServer, tasks: TaskGroup) -> None:
         """Work in `tasks`, in the running loop."""

@@ -18,14 +18,17 @@ class TwistRefusedError(Exception):
 
 
 class DriveLimits(NamedTuple):
-    """Limits of the robot, from its introduction."""
+    """Track in m and highest speed in m/s of the robot, by which twists become wheel speeds."""
 
     track_m: float
     max_m_s: float
 
 
 def wheel_speeds(twist: Twist, limits: DriveLimits) -> WheelSpeeds:
-    """Return the speeds of both sides for a twist in m/s and rad/s. Raises TwistRefusedError."""
+    """Return the speeds of both sides for a twist in m/s and rad/s.
+
+    Raises TwistRefusedError for a twist that the robot cannot drive exactly.
+    """
     linear, angular = twist.linear, twist.angular
     values = (linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
     if not all(map(math.isfinite, values)):

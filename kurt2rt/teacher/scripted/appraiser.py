@@ -19,7 +19,7 @@ _NAME = "scripted teacher"
 
 @dataclass(frozen=True, slots=True)
 class FeedbackTiming:
-    """Timing of a scripted teacher's rewards and appraisals, in ticks."""
+    """Delay and shortest intervals, in ticks, of a scripted teacher's rewards and appraisals."""
 
     reaction: int
     """Delay of a signal after the judged tick."""

@@ -10,7 +10,7 @@ from kurt2rt.teacher.scripted.press_times import PressTimes
 
 
 class TeacherView(NamedTuple):
-    """State of the robot as far as a teacher sees it: decision, readings and touch of one tick."""
+    """State of the robot as a scripted teacher sees it, from a tick record, the channel or a batch."""
 
     asking: bool
     """Its basic level asks."""
@@ -45,7 +45,7 @@ def view_of_tick(record: TickRecord, *, touching: bool = False) -> TeacherView:
 
 
 class Ahead(Protocol):
-    """Next ticks of a robot that drives on without its teacher."""
+    """Ticks of a compiled robot that were driven in advance, of which a teacher skips the uneventful ones."""
 
     @property
     def ticks(self) -> int:
@@ -69,7 +69,7 @@ class Ahead(Protocol):
 
 
 class BasicTeacher(ABC):
-    """Scripted teacher of the basic level: it sees states, and gives the commands that a person can give."""
+    """Base of scripted teachers of the basic level, which see states and give a person's commands."""
 
     may_be_late = False
     """True if the robot may refuse a command because it comes too late."""

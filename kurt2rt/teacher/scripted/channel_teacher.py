@@ -215,7 +215,7 @@ async def _state_at(robot: TeacherClient, tick: int) -> State:
 
 
 def view_of_state(state: State) -> TeacherView:
-    """Return the teacher's view of a state from the channel."""
+    """Return a scripted teacher's view of a state that came over the channel; bumpers tell of touches."""
     return TeacherView(
         asking=state.cause in ASKING,
         driving=state.action is not None,

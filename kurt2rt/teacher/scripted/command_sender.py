@@ -18,7 +18,7 @@ from kurt2rt.teacher.client.client import TeacherClient
 
 
 class CommandSender:
-    """Sender of each command once, without a second try."""
+    """Sender of a scripted teacher's commands to a running robot, each once, without a second try."""
 
     def __init__(self, robot: TeacherClient) -> None:
         self._robot = robot

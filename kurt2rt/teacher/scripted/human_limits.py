@@ -9,7 +9,7 @@ MINUTE_S = 60.0
 
 
 class DelaySampler:
-    """Delays in ticks, one drawn for each event; they grow with the time of teaching."""
+    """Source of a scripted person's delays in ticks, one for each event; they grow while it teaches."""
 
     def __init__(self, delay: Delay, slower_per_minute: float, period_s: float, seed: str) -> None:
         """Draw from a random stream of this `seed`, which nothing else uses; `period_s` is the length of a tick."""
@@ -49,7 +49,7 @@ class AttentionLapses:
 
 
 class PressLimit:
-    """Limit on presses in any minute, and the clock that it counts by."""
+    """Limit on a scripted person's presses in any minute, and the clock that it counts by."""
 
     def __init__(self, presses_per_minute: int, period_s: float) -> None:
         """Allow so many presses in any 60 s; 0: no limit."""

@@ -18,7 +18,7 @@ _Step = Literal["stop", "stopped", "looks", "taught", "resumed"]
 
 @dataclass(frozen=True, slots=True)
 class Mistake:
-    """Mistake as its teacher sees it."""
+    """Moment that a teacher believes to have gone wrong, and the action that it names for it."""
 
     tick: int
     """Tick in which the teacher believes that it began."""

@@ -20,7 +20,7 @@ from kurt2rt.teacher.scripted.press_times import HumanTimes
 
 
 class PersonChance:
-    """All chance of a person: one random stream for each kind of event."""
+    """Random choices of a scripted person, one stream for each kind of event, so that none shifts another."""
 
     def __init__(self, person: PersonSettings, period_s: float, of: str) -> None:
         """Begin the streams; `of` tells them from those of another lesson."""
@@ -48,7 +48,7 @@ class PersonChance:
 
 
 class Hand:
-    """Hand that presses for an action, and moves to the right action with a delay."""
+    """Hand of a scripted person that holds an action, and moves to the right action with a delay."""
 
     def __init__(self, delay_ticks: int, press_id: int, action: str, *, begins: int, ends: int) -> None:
         """Begin a press.
@@ -88,7 +88,7 @@ _Item = TypeVar("_Item")
 
 
 class DelayLine(Generic[_Item]):
-    """First-in, first-out queue with a delay."""
+    """First-in, first-out queue with a fixed delay in ticks, for a teacher's pictures and commands."""
 
     def __init__(self, delay_ticks: int) -> None:
         """Delay each item by `delay_ticks`."""
@@ -123,7 +123,7 @@ _REWIND_PRESSES = 2
 
 @dataclass(frozen=True, slots=True)
 class TaskSense:
-    """Knowledge of a scripted teacher about its task: right actions, and which actions look alike."""
+    """Knowledge of a scripted person about its task: the right action, and which actions look alike."""
 
     policy: ReferencePolicy
     """Chooses the right action."""

@@ -8,7 +8,7 @@ from kurt2rt.teacher.scripted.human_limits import DelaySampler, PressLimit
 
 
 class PressTimes(Protocol):
-    """Times of a teacher's presses, in ticks; each call that returns a time draws that of one event."""
+    """Times in ticks and errors of a scripted teacher's presses; each call draws one time."""
 
     answer_errors: float
     """Fraction of answers that are wrong."""
@@ -33,7 +33,7 @@ class PressTimes(Protocol):
 
 
 class FixedTimes:
-    """Times of a task's teacher, the same for each event, without a limit on presses."""
+    """Times of a teacher without a person's limits: the same for each event, any number of presses."""
 
     def __init__(self, settings: TeacherSettings, period_s: float) -> None:
         """Use the settings of a task; `period_s` is the length of a tick."""
@@ -59,7 +59,7 @@ class FixedTimes:
 
 
 class HumanTimes:
-    """Times of a person, drawn for each event, with both ways of the link."""
+    """Times of a teacher with a person's limits, drawn for each event, with both ways of the link."""
 
     def __init__(
         self, person: PersonSettings, presses: PressLimit, *, period_s: float, seed: int, session: str

@@ -23,7 +23,10 @@ _MAX_PLACES = 50
 
 
 class BehaviourCycler:
-    """Selection of one behaviour after another; a task of one behaviour needs no command."""
+    """Choice of the behaviour that a scripted teacher teaches next, each for a time, in turn.
+
+    A task of one behaviour needs no command.
+    """
 
     def __init__(self, behaviours: Sequence[str], period_s: float) -> None:
         """Start with the behaviour that the robot follows in the first state; `period_s` is the length of a tick."""
@@ -61,7 +64,7 @@ class BehaviourCycler:
 
 
 class RobotRepositioner:
-    """Places that the robot drove through, and the detection that it has stayed about one place for too long."""
+    """Detector of a robot without progress, to be set down at a place that it passed before."""
 
     def __init__(self, after_s: float, least_m: float, period_s: float, chance: random.Random) -> None:
         """Reposition a robot that moved at most `least_m` in `after_s`, longer in a slow lesson.

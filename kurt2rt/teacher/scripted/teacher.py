@@ -12,7 +12,7 @@ from kurt2rt.teacher.scripted.press_times import FixedTimes
 
 
 class ScriptedTeacher(BasicTeacher):
-    """Teacher without memory of the task, with a reaction time and a patience of its own.
+    """Scripted teacher that answers by the policy after a reaction time, and corrects after its patience.
 
     It sees the states that a person sees on the screen, and gives the commands that a person can give.
     """

@@ -25,7 +25,7 @@ _LEAST_SEEN = 0.75
 
 
 class RoomPlan:
-    """Outline, walls and tables of a room."""
+    """Outline, walls and tables of a random room under construction; it refuses what blocks the way."""
 
     def __init__(self, width_m: float, height_m: float) -> None:
         self.width_m, self.height_m = width_m, height_m

@@ -8,7 +8,10 @@ T = TypeVar("T")
 
 
 class SeededRandom:
-    """Random choices seeded by a text, by Random.random() alone: the one sequence that Python guarantees."""
+    """Random choices of a generated world, seeded by its name, equal in every version of Python.
+
+    Only Random.random() is used: the one sequence that Python guarantees.
+    """
 
     def __init__(self, text: str) -> None:
         self._random = random.Random(text).random

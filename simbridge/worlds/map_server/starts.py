@@ -25,7 +25,10 @@ Points = NDArray[np.float64]
 
 
 def turning_places(floor: shapely.Polygon, turning_m: float) -> shapely.Polygon | None:
-    """Return the largest area of centres of a robot with this turning radius; None if it fits nowhere."""
+    """Return the largest area in which a robot's centre can be and turn; None if it fits nowhere.
+
+    `turning_m`: radius of the robot's turn on the spot.
+    """
     pieces = polygons_of(shapely.buffer(floor, -turning_m, quad_segs=4))
     return max(pieces, key=lambda piece: float(piece.area), default=None)
 

@@ -25,7 +25,7 @@ Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class MapSettings(Settings):
-    """YAML file of a map with map_server's keys; keys of other programs are allowed."""
+    """Schema of the YAML file of a map by map_server; keys of other programs are allowed."""
 
     model_config = ConfigDict(extra="ignore")
 
@@ -56,7 +56,7 @@ def image_error(source: Path, what: str, do: str) -> SettingsError:
 
 
 class MapWorldSettings(Settings):
-    """World on a map with start poses in the map's frame, as RViz shows it."""
+    """Schema of a world's file that names a map of map_server, and start poses in the map's frame."""
 
     map: str
     """YAML file of the map, relative to this file."""
