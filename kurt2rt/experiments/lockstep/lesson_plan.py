@@ -26,7 +26,7 @@ class SignalTimes:
     gap_s: float = 0.0
     """Least time between two rewards or appraisals."""
     most_blame: int = 0
-    """Shortest time in s between two rewards of -1; 0: no limit."""
+    """Most rewards of -1 in a phase; 0: no limit."""
 
 
 @dataclass(frozen=True, slots=True)
