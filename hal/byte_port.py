@@ -40,7 +40,7 @@ class BytePort(Protocol):
 
 
 class MemoryPort:
-    """One end of a line in memory (BytePort), for a robot that is simulated in the same program."""
+    """End of a line in memory (BytePort) to a robot that this program simulates; `pair` makes both ends."""
 
     waiting = 0
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RobotWorlds:
-    """Base of factories of simulations: it checks, plans and draws the worlds of one robot."""
+    """Base of factories of simulations: checks, plans and draws a robot's worlds; subclasses add `open` and `live`."""
 
     settings: RobotSettings
 

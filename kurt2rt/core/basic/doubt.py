@@ -64,7 +64,7 @@ class DoubtSettings(Settings):
 
 
 class NewObstacle(NamedTuple):
-    """Sensor that sees an obstacle nearer than the lessons of actions that drive on."""
+    """Finding of doubt: a sensor sees something nearer than it did in the lessons of actions that drive on."""
 
     feature: int
     """Index of the sensor's reading in the situation."""

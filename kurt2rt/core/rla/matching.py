@@ -78,7 +78,7 @@ def bound_of_others(score: float, error: float, square: float, reach: float) -> 
         score: |c|^2/2 - c.s of a condition c and the situation s.
         error: bound of the score's error.
         square: |s|^2.
-        reach: |s| and the largest |c|, to the round-off of which the bound is widened.
+        reach: sum of |s| and the largest |c|; the bound is less by its round-off.
     """
     return math.sqrt(max(0.0, square + 2.0 * (score - error))) - 1e-9 * reach
 

@@ -170,7 +170,7 @@ class ControlAuthority:
         return self._repertoire
 
     def is_hold(self, teacher: str, press_id: int) -> bool:
-        """Return whether a press is this teacher's newest hold, over or not, or came before it and so is over."""
+        """Return whether a press is the newest hold of this teacher or an older one; a newer press is none yet."""
         return press_id <= self._holds.get(teacher, -1)
 
     def run(self, action: str, tick: int, ticks: int) -> None:

@@ -17,7 +17,7 @@ from simbridge.contracts.simulation import Simulation
 
 
 class NoTeachingAllowed:
-    """Event store of a run without a teacher; a teaching event in it is a defect."""
+    """Event store of a run without a teacher: `submit` raises RuntimeError."""
 
     saving_error: str | None = None
 

@@ -147,7 +147,7 @@ class PhasesJob(StudyJob):
         return tuple(each.stored().as_measure() for each in drives)
 
     async def examine(self, exam: ExamSetup, teachers: Sequence[DriveRow], report: Report) -> tuple[DriveRow, ...]:
-        """Return the exams of a setup's knowledge, measured by the teacher's own drives in the same worlds.
+        """Return an exam of the RLAs of `exam` in the world of each of `teachers`, judged by that drive of the policy.
 
         Raises SettingsError if task and world do not fit, UnknownActionError and UnknownBehaviourError if the knowledge
         does not.
