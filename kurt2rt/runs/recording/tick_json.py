@@ -111,18 +111,19 @@ def _decoder(hint: Any) -> Callable[[Any], Any]:
 
 
 def _named_tuple_decoder(kind: Any) -> Callable[[Any], Any]:
-    """Return the decoder of a named tuple. Absent fields may be those that may be None, and tuples, which are empty."""
-    decoders = []
-    for name, hint in get_type_hints(kind).items():
-        absent: tuple[Any, ...] = (
-            ((),) if get_origin(hint) is tuple else (None,) if type(None) in get_args(hint) else ()
-        )
-        decoders.append((_KEYS.get(name, name), _decoder(hint), absent))
+    """Return the decoder of a named tuple.
+
+    Absent fields may be those that may be None, those with a default, and other tuples, which are empty.
+    """
+    hints = {_KEYS.get(name, name): hint for name, hint in get_type_hints(kind).items()}
+    decoders = {key: _decoder(hint) for key, hint in hints.items()}
+    absent: dict[str, Any] = {key: () for key, hint in hints.items() if get_origin(hint) is tuple}
+    absent |= kind._field_defaults
+    absent |= {key: None for key, hint in hints.items() if type(None) in get_args(hint)}
 
     def decode(content: dict[str, Any]) -> Any:
-        return kind(
-            *(decoder(content.get(key, *absent) if absent else content[key]) for key, decoder, absent in decoders)
-        )
+        fields = decoders.items()
+        return kind(*(decoder(content[key]) if key in content else absent[key] for key, decoder in fields))
 
     return decode
 

@@ -1,6 +1,6 @@
 """Every tick comes back from its entry as it was, to the last bit."""
 
-from typing import get_args
+from typing import NamedTuple, get_args
 
 import pytest
 from hypothesis import given
@@ -18,7 +18,7 @@ from kurt2rt.core.teaching.commands import Command, Seek
 from kurt2rt.core.teaching.inbox import SystemEvent
 from kurt2rt.runs.recording.entries import DecisionEntry, MatchEntry, MidEntry, OpinionEntry, ResultEntry, TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
-from kurt2rt.runs.recording.tick_json import decode_command, decode_tick, encode_command, encode_tick
+from kurt2rt.runs.recording.tick_json import _decoder, decode_command, decode_tick, encode_command, encode_tick
 
 KINDS = (*get_args(Command), *get_args(SystemEvent))
 
@@ -133,6 +133,15 @@ def test_every_command_comes_back_as_it_was(command: object) -> None:
 def test_a_goal_keeps_its_kind(goal: NamedGoal | RlaGoal | PartialGoal) -> None:
     seek = Seek("s", "Ann", goal, 7)
     assert decode_command(encode_command(seek)) == seek
+
+
+def test_a_reading_of_before_a_field_has_its_default() -> None:
+    class NewReadings(NamedTuple):
+        time_s: float
+        turned: WheelSpeeds = WheelSpeeds(0.5, 0.0)
+        compass: float | None = 3.0  # None is left out
+
+    assert _decoder(NewReadings)({"time_s": 1.0}) == (1.0, (0.5, 0.0), None)
 
 
 def test_decode_tick_of_other_content_raises_recording_error() -> None:
