@@ -23,8 +23,6 @@ class InfraredCounts(NamedTuple):
     counts: list[int]
     times_s: list[float]
     """One per frame, in s; minus infinity before its first."""
-    frames: list[int]
-    """Number of each frame so far."""
 
 
 FrameReader = Callable[[bytes | bytearray, float, Arrivals], None]
@@ -34,16 +32,15 @@ FrameReader = Callable[[bytes | bytearray, float, Arrivals], None]
 class InfraredFrame:
     """Frame of a converter: the places of its channels in the counts of all sensors, and its board."""
 
-    __slots__ = ("board", "codec", "counts", "frames", "last_payload", "places", "row", "times_s")
+    __slots__ = ("board", "codec", "counts", "last_payload", "places", "row", "times_s")
 
     def __init__(
         self, codec: MessageCodec, places: tuple[tuple[int, int], ...], board: Board, newest: InfraredCounts
     ) -> None:
         """Add a row to `newest`; `places`: (place in the frame, place in `newest.counts`) of each distance channel."""
-        self.counts, self.times_s, self.frames = newest
+        self.counts, self.times_s = newest
         self.row = len(self.times_s)
         self.times_s.append(-math.inf)
-        self.frames.append(0)
         self.codec = codec
         self.places = places
         self.board = board
@@ -52,9 +49,8 @@ class InfraredFrame:
     def read(self, data: bytes | bytearray, at_s: float, arrivals: Arrivals) -> None:
         """Store the counts and the time `at_s`, in s, of a frame's distance channels; note changes in `arrivals`.
 
-        Raises InvalidFrameError, counting the frame alone, for a payload that is too short or a count above the range.
+        Raises InvalidFrameError, changing nothing, for a payload that is too short or a count above the range.
         """
-        self.frames[self.row] += 1
         if data != self.last_payload:
             raw, counts = self.codec.unpack(data), self.counts
             for at, _ in self.places:

@@ -34,17 +34,15 @@ class Kurt2(GuardedRobot):
         super().__init__(settings, CanWheelPort(settings, bus), watch, watchdog_clock)
         self._controller = self._bus_state
         codec = load_codec(settings.can.database)
-        self._frames_of: Final[list[int]] = []
-        """Number of each frame so far: those with distance sensors, then ENCODER, then BUMPERC."""
-        newest = InfraredCounts(self._counts, self._times_s, self._frames_of)
-        analog = infrared_frames(channels, codec, watch, newest)
+        analog = infrared_frames(channels, codec, watch, InfraredCounts(self._counts, self._times_s))
         self._encoder = codec.message("ENCODER", ("LEFT", "RIGHT"))
         self._bumperc = codec.message("BUMPERC", ("BUMPERS", "REMOTE_CONTROL"))
         self._readers: dict[int, FrameReader] = {frame.codec.frame_id: frame.read for frame in analog}
         self._readers |= {self._encoder.frame_id: self._read_encoder, self._bumperc.frame_id: self._read_bumpers}
-        self._frames_of.extend((0, 0))
+        self._frames_of: Final = dict.fromkeys(self._readers, 0)
+        """Number of frames so far, by identifier."""
         names = [f"0x{frame_id:02X} ({codec.by_id[frame_id].name})" for frame_id in self._readers]
-        self._sender_watch: Final = SenderWatch(names, self._frames_of, settings.cycle_s)
+        self._sender_watch: Final = SenderWatch(names, self._frames_of.values(), settings.cycle_s)
         self._bumper_payload: bytes | bytearray = b""
         self._cycle_s: Final = settings.cycle_s
         self._encoder_frames = 0
@@ -70,7 +68,7 @@ class Kurt2(GuardedRobot):
 
     def _read(self, messages: list[can.Message], bus_now_s: float | None, now_s: float, arrivals: Arrivals) -> None:
         """Read waiting frames in order; `bus_now_s`: the present on the clock of their time stamps, None without."""
-        error_frames, readers = 0, self._readers
+        error_frames, readers, frames_of = 0, self._readers, self._frames_of
         for message in messages:
             if message.is_error_frame:
                 error_frames += 1
@@ -91,6 +89,7 @@ class Kurt2(GuardedRobot):
             reader = readers.get(frame_id)
             try:
                 if reader is not None:
+                    frames_of[frame_id] += 1
                     reader(message.data, at_s, arrivals)
                 elif frame_id == CONTROL_ID:
                     arrivals.foreign_control += 1
@@ -100,7 +99,6 @@ class Kurt2(GuardedRobot):
             self._bus_state.note_traffic()
 
     def _read_encoder(self, data: bytes | bytearray, at_s: float, arrivals: Arrivals) -> None:
-        self._frames_of[-2] += 1
         left, right = self._encoder.unpack(data)
         arrivals.left_ticks += left
         arrivals.right_ticks += right
@@ -108,7 +106,6 @@ class Kurt2(GuardedRobot):
         self._encoder_at_s = at_s
 
     def _read_bumpers(self, data: bytes | bytearray, at_s: float, arrivals: Arrivals) -> None:
-        self._frames_of[-1] += 1
         if data != self._bumper_payload:
             self._bumpers = self._bumperc.unpack(data)[0] & self._bumper_mask
             self._bumper_payload = data

@@ -1,7 +1,7 @@
 """Detection of a second sender of an identifier: its frames come more often than one controller can send them."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 _LOOK_TICKS = 25
 """Ticks between two looks: looking in each tick would take 5 % of it."""
@@ -24,10 +24,10 @@ class SenderWatch:
     Source: virtual scheduling of the generic cell rate algorithm, ITU-T I.371, A.1.
     """
 
-    def __init__(self, names: Sequence[str], frames: Sequence[int], period_s: float) -> None:
+    def __init__(self, names: Sequence[str], frames: Collection[int], period_s: float) -> None:
         """Watch identifiers with these names, each of which one controller sends every `period_s` seconds at most.
 
-        `frames`: number of frames of each so far, which their readers go on counting.
+        `frames`: view of the number of frames of each so far, which goes on counting.
         """
         self._names = names
         self._frames = frames
