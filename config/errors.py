@@ -18,14 +18,17 @@ class ExitCode(IntEnum):
 
 
 class TextCode(StrEnum):
-    """Base of codes that are told to a person: each member carries its text."""
+    """Base of codes that are told to a person: each member carries its text.
+
+    A member may have more values, which the subclass keeps in its `__init__`.
+    """
 
     text: str
     """Fact or fault, with the fields of its case in braces."""
     do: str
     """Remedy, with the fields of its case in braces; empty if there is none, or `text` says it."""
 
-    def __new__(cls, value: str, text: str = "", do: str = "") -> Self:
+    def __new__(cls, value: str, text: str = "", do: str = "", *_more: object) -> Self:
         """Make a member of a code and its text."""
         member = str.__new__(cls, value)
         member._value_ = value

@@ -7,7 +7,7 @@ from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.planning.navigator import Navigator
 from kurt2rt.core.rla.rla import MID
 
-_STANDS: dict[GoalStatus | None, DecisionCause] = {
+GOAL_CAUSES: dict[GoalStatus | None, DecisionCause] = {
     GoalStatus.ARRIVED: DecisionCause.AT_GOAL,
     GoalStatus.NO_WAY: DecisionCause.NO_WAY,
 }
@@ -44,7 +44,7 @@ class LayerStack:
             decision = decision._replace(match=commanded.match, asks_at=MID, mid=commanded)
         else:
             if navigator is not None and not self.mid.overridden:
-                blocking_cause = blocking_cause or _STANDS.get(navigator.standing_status)
+                blocking_cause = blocking_cause or GOAL_CAUSES.get(navigator.standing_status)
             decision = self._decide_below(situation, readings, blocking_cause)
             decision = decision._replace(mid=commanded)
         if navigator is not None:

@@ -1,6 +1,6 @@
 """Meter of teaching progress, fed with the record of each tick."""
 
-from kurt2rt.core.decision.standing import StandReason
+from kurt2rt.core.decision.decision import StandReason
 from kurt2rt.core.teaching.progress import WINDOW_S, Progress
 from kurt2rt.core.tick_record import TickRecord
 

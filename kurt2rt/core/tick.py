@@ -82,6 +82,9 @@ _SENSE, _PERCEIVE, _DECIDE, _GUARD, _LEARN, _PUBLISH = Stage
 _TEACHER, _UNATTENDED = DecisionCause.TEACHER, DecisionCause.UNATTENDED
 """Names for each tick, because Python 3.11 looks a member up in its enumeration ten times slower than a global."""
 
+_STOPS_HANDS = (DecisionCause.BLIND, DecisionCause.UNSAVED)
+"""Causes by which not even a teacher drives by hand."""
+
 _TEACHABLE = BY_KNOWLEDGE | ASKING
 """Causes of decisions that a held action may correct."""
 
@@ -385,10 +388,11 @@ class Tick:
         """Return the decision of the levels, or of the teacher who drives by hand."""
         handler, authority = self._handler, self._handler.authority
         handler.before_decision(tick, was_driving=self._driving, turned=self._turned)
-        cause = self._stand_cause(tick, blind=blind)
+        causes = handler.causes_to_stand(tick, blind=blind, unsaved=self._saving_error is not None)
+        cause = causes[0] if causes else None
         authority.expire(tick)
         if authority.is_manual(tick):
-            because = self._blocking_cause(blind=blind) or _TEACHER
+            because = next((each for each in causes if each in _STOPS_HANDS), _TEACHER)
             idle_decision = stopped(self._level.decide(situation, readings, because), because)
             if because is not _TEACHER:
                 return idle_decision
@@ -400,22 +404,6 @@ class Tick:
             # An unknown situation is asked about even without a teacher.
             return decision._replace(cause=DecisionCause.UNKNOWN)
         return decision
-
-    def _stand_cause(self, tick: int, *, blind: bool) -> DecisionCause | None:
-        """Return the cause that RLAs may not drive; None if they may."""
-        handler = self._handler
-        if handler.stops.active is not None:
-            return DecisionCause.STOPPED
-        cause = self._blocking_cause(blind=blind)
-        if cause is None and handler.requires_teacher and not handler.authority.is_present(tick):
-            return _UNATTENDED
-        return cause
-
-    def _blocking_cause(self, *, blind: bool) -> DecisionCause | None:
-        """Return the cause that neither an RLA nor manual drive may move the robot; None if they may."""
-        if blind:
-            return DecisionCause.BLIND
-        return None if self._saving_error is None else DecisionCause.UNSAVED
 
 
 def _needs_present_situation(command: Command) -> bool:

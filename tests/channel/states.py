@@ -4,8 +4,8 @@ from dataclasses import replace
 from typing import Any
 
 from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
-from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, standing_for
+from kurt2rt.core.decision.decision import DecisionCause, StandReason
+from kurt2rt.core.decision.standing import DRIVES, Standing, standing_for
 from kurt2rt.core.teaching.question import FeatureDifference
 from simbridge.contracts.simulation import SimulatedPlace
 

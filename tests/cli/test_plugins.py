@@ -38,4 +38,4 @@ def test_robot_stands_and_asks_once_an_action_failed(plugin_folder: Path) -> Non
         robot.run(seconds=0.2)
         assert str(robot.why()).startswith("wiggle\n")
         robot.run(seconds=0.5)
-        assert str(robot.why()).startswith("stands and asks\n")
+        assert str(robot.why()).startswith("stands and asks: ")

@@ -13,7 +13,8 @@ import pytest
 
 from hal.bus import CONTROL_ID
 from hal.codec import load_codec
-from kurt2rt.core.decision.standing import Standing, StandReason, short_text
+from kurt2rt.core.decision.decision import StandReason
+from kurt2rt.core.decision.standing import Standing, short_text
 from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal

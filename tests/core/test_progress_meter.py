@@ -1,6 +1,7 @@
 """Progress over the last minute, from the records of ticks."""
 
-from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.decision.decision import StandReason
+from kurt2rt.core.decision.standing import Standing
 from kurt2rt.core.progress_meter import ProgressMeter
 from kurt2rt.core.teaching.progress import Progress
 from kurt2rt.core.tick_record import TickRecord

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from hal.robot import STANDSTILL, WheelSpeeds
-from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.decision.standing import ASKS_AFTER_TICKS, Standing, StandReason
+from kurt2rt.core.decision.decision import DecisionCause, StandReason
+from kurt2rt.core.decision.standing import ASKS_AFTER_TICKS, Standing
 from kurt2rt.core.teaching.commands import Resume, Teach, Watch
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.replay.comparison import compare

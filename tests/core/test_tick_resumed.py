@@ -3,7 +3,7 @@
 import pytest
 
 from hal.guard_reason import GuardReason
-from kurt2rt.core.decision.standing import StandReason
+from kurt2rt.core.decision.decision import StandReason
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.outcome_text import text_of
 from tests.core.test_tick import Corridor

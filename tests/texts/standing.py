@@ -3,11 +3,11 @@
 from collections.abc import Callable, Iterator
 
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.decision import StandReason
 from kurt2rt.core.decision.standing import (
     GO_IN_TERMINAL,
     GO_ON_PAGE,
     Standing,
-    StandReason,
     short_text,
     standing_headline,
     stop_text,

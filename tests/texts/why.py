@@ -110,7 +110,8 @@ def own_actions() -> Iterator[tuple[str, str]]:
         (DecisionCause.NO_WAY,),
         (),
     ):
-        hindered = replace(STOPPED, hindrances=tuple(each.value for each in hindrances))
+        plan_says = OF_CAUSE[hindrances[-1]].plan_says if hindrances else ""
+        hindered = replace(STOPPED, hindrances=tuple(each.value for each in hindrances), plan_says=plan_says)
         yield f"stopped; {', '.join(hindrances) or 'nothing else'}", format_reasons(hindered)[1]
     yield "stopped; of a learner", format_reasons(standing(DecisionCause.STOPPED, replace(KNOWN, nearest=None)))[1]
     yield "stopped; of one condition", format_reasons(standing(DecisionCause.STOPPED, CROWD))[1]

@@ -1,9 +1,9 @@
 """Decision of one tick: wheel speeds, their cause, and the RLAs that were compared; what a level and a plan add."""
 
-from enum import StrEnum
-from typing import NamedTuple, Protocol
+from enum import IntEnum, StrEnum
+from typing import NamedTuple, Protocol, Self
 
-from config.errors import UserError
+from config.errors import TextCode, UserError
 from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.active_rlas import Match
@@ -64,36 +64,138 @@ class PlanStep(NamedTuple):
     """Number of arrivals at another place than planned, since the goal was given."""
 
 
+class Severity(IntEnum):
+    """Level of a reason to stand, in the numbers of ROS 2 diagnostics."""
+
+    FINE = 0
+    WAITS = 1
+    """A teacher lets the robot drive on."""
+    FAULT = 2
+    """Something is broken."""
+
+
+class StandReason(TextCode):
+    """Code for why the wheels stand; DRIVES if they turn.
+
+    It is a word of the wire contract: page, terminal, log, `kurt2rt status` and `kurt2rt why` word the same code. The
+    guard's reason comes before a stop, and a stop before the decision's cause. Its text continues "stands: "; its
+    fields are those of Standing. Its remedy is a sentence, and precedes the resume if the robot stands until then.
+    """
+
+    severity: Severity
+
+    def __init__(self, _value: str, _text: str = "", _do: str = "", severity: Severity = Severity.FAULT) -> None:
+        """Keep what TextCode does not."""
+        self.severity = severity
+
+    DRIVES = ("drives", "", "", Severity.FINE)
+    """The wheels turn."""
+    ASKS = ("asks", "it does not know this situation", "Teach it what to do here", Severity.WAITS)
+    """The situation of the basic level is unknown."""
+    DOUBTS = ("doubts", "it doubts that its action is right here", "Teach it what to do here", Severity.WAITS)
+    """The situation of the basic level is known, but the robot doubts that the action is right."""
+    ASKS_THE_WAY = ("asks the way", "it does not know the way", "Teach it which behaviour to follow", Severity.WAITS)
+    """The situation of the mid level is unknown."""
+    FRONT_BUMPER = ("front bumper", "it touches something in front", "Drive it back", Severity.WAITS)
+    """The robot touches something in front and would drive on toward it."""
+    REAR_BUMPER = ("rear bumper", "it touches something behind", "Drive it forward", Severity.WAITS)
+    BOTH_BUMPERS = ("both bumpers", "it touches something in front and behind", "Set it free", Severity.WAITS)
+    STOPPED = ("stopped", "{stop}", "", Severity.WAITS)
+    """A teacher stopped the robot, it lost its teacher, or it was just started."""
+    UNATTENDED = ("unattended", "no teacher looks at it", "Take the robot", Severity.WAITS)
+    BLIND = ("blind", "its range sensors are silent", "Check its power and cable")
+    UNSAVED = ("unsaved", "lessons cannot be saved", "Look at the disk")
+    AT_GOAL = ("at goal", "{says}", "", Severity.FINE)
+    NO_WAY = ("no way", "{says}", "", Severity.WAITS)
+    COMPUTER_TOO_SLOW = ("computer too slow", "the computer was too slow{stall}")
+    """The watchdog braked because ticks had ceased; until a resume."""
+    BUS_LOST = ("bus lost", "its bus is lost", "Check its power and cable")
+    BUS_BLOCKED = ("bus blocked", "its bus carries nothing", "Check its power, cable and bit rate")
+    BUS_OFF = ("bus off", "its bus failed too often", "Check cable, termination and bit rate")
+    FOREIGN_CONTROL = ("foreign control", "another program drives it, too", "Find and end that one")
+    FOREIGN_TELEMETRY = ("foreign telemetry", "another program sends its readings, too", "Find and end that one")
+    WHEELS_DISOBEY = ("wheels disobey", "its wheels disobey", "Set them free, or switch it off and on")
+    INFRARED_FROZEN = ("range sensors frozen", "its range sensors are frozen", "Switch it off and on")
+    ROBOT_FAULT = ("robot fault", "it reports a fault of its own", "Mend what it names")
+    """The robot itself tells a fault; the health report has its text."""
+    HALTED = ("halted", "{says}")
+    """The robot program stopped the robot, because it ends or waits for a dependency."""
+    LATE = ("late", "the computer is too slow", "End other work on it")
+    """Decisions are too old when they reach the guard."""
+    CLOCK = ("clock", "the computer's clock ran backwards", "Wait until it is right again")
+    """The computer's clock ran backwards."""
+    ENCODERS_SILENT = ("encoders silent", "its encoders are silent", "Check its power and cable")
+    BUMPERS_SILENT = ("bumpers silent", "its bumpers are silent", "Check its power and cable")
+    NOT_A_NUMBER = ("not a number", "the decided speed is not a number", "Teach it another action here")
+    """The decided speed is not a number."""
+    LEARNER_FAILED = ("learner failed", "its learner failed: {says}", "Mend it and begin again")
+    """A learner raised an error or decided an unknown action, and is not asked again."""
+
+
 class DecisionCause(StrEnum):
-    """Code for why a decision sets these wheel speeds: what drives, or why the robot stands."""
+    """Code for why a decision sets these wheel speeds: what drives, or why the robot stands.
+
+    Its sentence is what `kurt2rt why` says of it, with fields in braces; empty if the RLAs tell more.
+    """
+
+    stands: StandReason
+    """Reason of a robot that the guard does not hold."""
+    sentence: str
+
+    def __new__(cls, value: str, stands: StandReason = StandReason.DRIVES, sentence: str = "") -> Self:
+        """Make a member of a code, the standing that follows, and its sentence."""
+        member = str.__new__(cls, value)
+        member._value_ = value
+        member.stands, member.sentence = stands, sentence
+        return member
 
     RLA = "rla"
     """The situation lies inside the radius of the nearest RLA, whose action drives."""
     HELD = "held"
     """Another RLA is nearest now, but the minimum time of the action before is not over."""
-    TEACHER = "teacher"
+    TEACHER = ("teacher", StandReason.DRIVES, "{teacher} drives: {action}. No RLA was asked.")
     """A teacher drives by hand, or a reference policy drives."""
-    UNKNOWN = "unknown"
+    UNKNOWN = ("unknown", StandReason.ASKS)
     """No RLA is near enough; the robot stands and asks."""
-    BLIND = "blind"
+    BLIND = (
+        "blind",
+        StandReason.BLIND,
+        "The readings of the range sensors {age}: there is no situation to decide on, nor to ask about.",
+    )
     """The infra-red readings are old or missing, so there is no situation to decide on or to ask about."""
-    STOPPED = "stopped"
+    STOPPED = ("stopped", StandReason.STOPPED, "The robot was stopped: {stop}. It waits for Go.")
     """A teacher stopped the robot."""
-    UNATTENDED = "unattended"
+    UNATTENDED = (
+        "unattended",
+        StandReason.UNATTENDED,
+        "The robot knows what to do, but drives only while a teacher is there, and none is.",
+    )
     """The situation is known, but the teacher whose presence is required is absent."""
-    UNSAVED = "unsaved"
+    UNSAVED = (
+        "unsaved",
+        StandReason.UNSAVED,
+        "Lessons cannot be saved at the moment{trouble}: the robot stands until they can.",
+    )
     """Lessons cannot be saved; the robot stands until they are."""
-    AT_GOAL = "at goal"
+    AT_GOAL = ("at goal", StandReason.AT_GOAL, "{plan}.")
     """The robot has reached its goal."""
-    TOUCHES = "touches"
+    TOUCHES = ("touches", StandReason.FRONT_BUMPER)
     """An RLA pushes toward what a bumper touches and the guard lets no wheel turn; the robot asks."""
-    DOUBT = "doubt"
+    DOUBT = ("doubt", StandReason.DOUBTS)
     """The situation lies inside the radius of the nearest RLA, but the robot doubts its action; it stands and asks."""
-    NO_WAY = "no way"
+    NO_WAY = ("no way", StandReason.NO_WAY, "{plan}.")
     """No taught way leads from here to the goal."""
-    LEARNER = "learner"
+    LEARNER = (
+        "learner",
+        StandReason.DRIVES,
+        "A learner without RLAs drives: {action}. It gives no reasons for its decisions.",
+    )
     """A learner that is no RLA system knows the situation, and its action drives."""
-    LEARNER_FAILED = "learner failed"
+    LEARNER_FAILED = (
+        "learner failed",
+        StandReason.LEARNER_FAILED,
+        "The learner that decides failed{trouble}: the robot stands.",
+    )
     """A learner raised an error or decided an unknown action; the robot stands."""
 
 

@@ -1,7 +1,7 @@
 """Open question: one question of the robot, from its first tick until it is answered, overtaken or left behind."""
 
-from kurt2rt.core.decision.decision import BY_KNOWLEDGE, Decision, DecisionCause
-from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.decision.decision import BY_KNOWLEDGE, Decision, DecisionCause, StandReason
+from kurt2rt.core.decision.standing import Standing
 from simbridge.contracts.shared_rules import SURE_SHARE, question_ticks
 
 _KNOWN = BY_KNOWLEDGE | {DecisionCause.UNATTENDED}

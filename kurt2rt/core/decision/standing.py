@@ -5,65 +5,12 @@ Page, terminal, status line, status and channel all read it, and its texts at th
 
 from typing import NamedTuple
 
-from config.errors import TextCode
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop
-from kurt2rt.core.decision.decision import ASKING, BY_KNOWLEDGE, Decision, DecisionCause
+from kurt2rt.core.decision.decision import ASKING, BY_KNOWLEDGE, Decision, DecisionCause, StandReason
 from kurt2rt.core.message_fields import Finite, Line, Truth
 from kurt2rt.core.rla.rla import MID
-
-
-class StandReason(TextCode):
-    """Code for why the wheels stand; DRIVES if they turn.
-
-    It is a word of the wire contract: page, terminal, log and `kurt2rt status` word the same code. The guard's reason
-    comes before a stop, and a stop before the decision's cause. Its text continues "stands: "; its fields are those of
-    Standing. Its remedy is a sentence, and precedes the resume if the robot stands until then.
-    """
-
-    DRIVES = ("drives", "")
-    """The wheels turn."""
-    ASKS = ("asks", "it does not know this situation", "Teach it what to do here")
-    """The situation of the basic level is unknown."""
-    DOUBTS = ("doubts", "it doubts that its action is right here", "Teach it what to do here")
-    """The situation of the basic level is known, but the robot doubts that the action is right."""
-    ASKS_THE_WAY = ("asks the way", "it does not know the way", "Teach it which behaviour to follow")
-    """The situation of the mid level is unknown."""
-    FRONT_BUMPER = ("front bumper", "it touches something in front", "Drive it back")
-    """The robot touches something in front and would drive on toward it."""
-    REAR_BUMPER = ("rear bumper", "it touches something behind", "Drive it forward")
-    BOTH_BUMPERS = ("both bumpers", "it touches something in front and behind", "Set it free")
-    STOPPED = ("stopped", "{stop}")
-    """A teacher stopped the robot, it lost its teacher, or it was just started."""
-    UNATTENDED = ("unattended", "no teacher looks at it", "Take the robot")
-    BLIND = ("blind", "its range sensors are silent", "Check its power and cable")
-    UNSAVED = ("unsaved", "lessons cannot be saved", "Look at the disk")
-    AT_GOAL = ("at goal", "{says}")
-    NO_WAY = ("no way", "{says}")
-    COMPUTER_TOO_SLOW = ("computer too slow", "the computer was too slow{stall}")
-    """The watchdog braked because ticks had ceased; until a resume."""
-    BUS_LOST = ("bus lost", "its bus is lost", "Check its power and cable")
-    BUS_BLOCKED = ("bus blocked", "its bus carries nothing", "Check its power, cable and bit rate")
-    BUS_OFF = ("bus off", "its bus failed too often", "Check cable, termination and bit rate")
-    FOREIGN_CONTROL = ("foreign control", "another program drives it, too", "Find and end that one")
-    FOREIGN_TELEMETRY = ("foreign telemetry", "another program sends its readings, too", "Find and end that one")
-    WHEELS_DISOBEY = ("wheels disobey", "its wheels disobey", "Set them free, or switch it off and on")
-    INFRARED_FROZEN = ("range sensors frozen", "its range sensors are frozen", "Switch it off and on")
-    ROBOT_FAULT = ("robot fault", "it reports a fault of its own", "Mend what it names")
-    """The robot itself tells a fault; the health report has its text."""
-    HALTED = ("halted", "{says}")
-    """The robot program stopped the robot, because it ends or waits for a dependency."""
-    LATE = ("late", "the computer is too slow", "End other work on it")
-    """Decisions are too old when they reach the guard."""
-    CLOCK = ("clock", "the computer's clock ran backwards", "Wait until it is right again")
-    """The computer's clock ran backwards."""
-    ENCODERS_SILENT = ("encoders silent", "its encoders are silent", "Check its power and cable")
-    BUMPERS_SILENT = ("bumpers silent", "its bumpers are silent", "Check its power and cable")
-    NOT_A_NUMBER = ("not a number", "the decided speed is not a number", "Teach it another action here")
-    """The decided speed is not a number."""
-    LEARNER_FAILED = ("learner failed", "its learner failed: {says}", "Mend it and begin again")
-    """A learner raised an error or decided an unknown action, and is not asked again."""
 
 
 class Standing(NamedTuple):
@@ -107,16 +54,6 @@ _HELD: dict[str, StandReason] = {
 }
 """Reasons by the guard's code for set points that it blocks tick by tick."""
 
-_CAUSES = {
-    DecisionCause.STOPPED: StandReason.STOPPED,
-    DecisionCause.UNATTENDED: StandReason.UNATTENDED,
-    DecisionCause.BLIND: StandReason.BLIND,
-    DecisionCause.UNSAVED: StandReason.UNSAVED,
-    DecisionCause.AT_GOAL: StandReason.AT_GOAL,
-    DecisionCause.NO_WAY: StandReason.NO_WAY,
-    DecisionCause.LEARNER_FAILED: StandReason.LEARNER_FAILED,
-}
-
 
 def standing_for(cause: DecisionCause, asks_at: str, stop: ActiveStop | None, says: str = "") -> Standing:
     """Return the standing of a robot that the guard does not hold, from the cause of its decision.
@@ -130,15 +67,10 @@ def standing_for(cause: DecisionCause, asks_at: str, stop: ActiveStop | None, sa
     asks = cause in ASKING
     if stop is not None:
         return Standing(StandReason.STOPPED, True, asks, stop=stop)
-    if cause == DecisionCause.UNKNOWN:
-        return Standing(StandReason.ASKS_THE_WAY if asks_at == MID else StandReason.ASKS, asks=True)
-    if cause == DecisionCause.DOUBT:
-        return Standing(StandReason.DOUBTS, asks=True)
-    if cause == DecisionCause.TOUCHES:
-        return Standing(StandReason.FRONT_BUMPER, asks=True)
-    if cause in BY_KNOWLEDGE or cause == DecisionCause.TEACHER:
-        return DRIVES
-    return Standing(_CAUSES[cause], says=says)
+    if asks:
+        way = cause is DecisionCause.UNKNOWN and asks_at == MID
+        return Standing(StandReason.ASKS_THE_WAY if way else cause.stands, asks=True)
+    return DRIVES if cause.stands is StandReason.DRIVES else Standing(cause.stands, says=says)
 
 
 ASKS_AFTER_TICKS = 50

@@ -1,13 +1,14 @@
 """Command handler: carries out the teacher's commands in the tick that takes them."""
 
 from collections.abc import Iterable, Sequence
+from itertools import compress
 from typing import TypeGuard
 
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.decision import Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.lesson_speed import LessonSpeed
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.outcome_text import event_error_text
@@ -60,6 +61,9 @@ from kurt2rt.core.teaching.stop_record import StopRecord
 _Answer = tuple[CommandResult, tuple[TeachingEvent, ...]]
 _TAUGHT_PHASES = (Phase.SUPERVISED, Phase.CORRECTIONS)
 """Phases in which the robot is taught actions."""
+
+_BLOCKING = (DecisionCause.STOPPED, DecisionCause.BLIND, DecisionCause.UNSAVED, DecisionCause.UNATTENDED)
+"""Causes that forbid the RLAs to drive; a robot stands for the first that holds."""
 
 
 class CommandHandler:
@@ -154,6 +158,14 @@ class CommandHandler:
         authority = self.authority
         if was_driving and self.stops.active is None and self.requires_teacher and not authority.is_present(tick):
             self.stop(authority.absence_stop)
+
+    def causes_to_stand(self, tick: int, *, blind: bool, unsaved: bool) -> tuple[DecisionCause, ...]:
+        """Return the causes that forbid the RLAs to drive in a tick, highest priority first.
+
+        `blind`: whether the range sensors are silent. `unsaved`: whether lessons cannot be saved.
+        """
+        unattended = self.requires_teacher and not self.authority.is_present(tick)
+        return tuple(compress(_BLOCKING, (self.stops.active is not None, blind, unsaved, unattended)))
 
     def forget_obstacles(self) -> None:
         """Forget the obstacles that the basic level remembers, because the robot was set down elsewhere."""

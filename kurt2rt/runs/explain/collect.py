@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.decision.decision import Decision, DecisionCause, GoalStatus, MidDecision
+from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
+from kurt2rt.core.layer_stack import GOAL_CAUSES
 from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.events import RlaRewarded
@@ -138,20 +139,13 @@ def _contact(runtime: Runtime, action: str) -> ContactFacts | None:
 def _blocking_causes(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
     """Return the causes that would stop the robot, highest priority first."""
     school, navigator, mid = runtime.handler, runtime.navigator, record.decision.mid
-    found = []
-    if not record.readings.infrared_age_s <= runtime.robot.guard.stale_infrared_s:
-        found.append(DecisionCause.BLIND)
-    if record.saving_error is not None:
-        found.append(DecisionCause.UNSAVED)
-    if school.requires_teacher and not school.authority.is_present(record.tick):
-        found.append(DecisionCause.UNATTENDED)
+    blind = not record.readings.infrared_age_s <= runtime.robot.guard.stale_infrared_s
+    causes = school.causes_to_stand(record.tick, blind=blind, unsaved=record.saving_error is not None)
+    found = [cause.value for cause in causes if cause is not DecisionCause.STOPPED]
     if navigator is not None and mid is not None and not mid.overridden:
-        match navigator.standing_status:
-            case GoalStatus.ARRIVED:
-                found.append(DecisionCause.AT_GOAL)
-            case GoalStatus.NO_WAY:
-                found.append(DecisionCause.NO_WAY)
-    return tuple(cause.value for cause in found)
+        by_goal = GOAL_CAUSES.get(navigator.standing_status)
+        found += [] if by_goal is None else [by_goal.value]
+    return tuple(found)
 
 
 class _LevelSituation(NamedTuple):

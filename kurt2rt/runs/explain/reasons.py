@@ -2,13 +2,14 @@
 
 import math
 
-from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.decision.active_stop import ActiveStop
+from kurt2rt.core.decision.decision import DecisionCause, StandReason
 from kurt2rt.core.decision.standing import (
     DRIVES,
     Standing,
-    StandReason,
     reason_text,
     short_text,
+    standing_for,
     standing_latched,
     stop_text,
     touched_bumper,
@@ -17,44 +18,24 @@ from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.facts import ContactFacts, DecisionFacts, DoubtFacts, LevelFacts, RlaFacts
 from kurt2rt.runs.explain.sentences import format_distance, format_nearness, format_rla
 
-_STANDS = {
-    DecisionCause.BLIND: "it sees nothing",
-    DecisionCause.STOPPED: "it was stopped",
-    DecisionCause.UNATTENDED: "no teacher is there",
-    DecisionCause.UNSAVED: "lessons cannot be saved",
-    DecisionCause.AT_GOAL: "it is at its goal",
-    DecisionCause.NO_WAY: "no way leads to its goal",
-    DecisionCause.TOUCHES: "it touches something",
-    DecisionCause.DOUBT: "it doubts its action",
-    DecisionCause.LEARNER_FAILED: "its learner failed",
-}
-
 _TOLD_DOUBT = 1.0
 """Least doubt that is told of a robot that drives: that of 1 % of the ticks of a usual drive."""
 
 _NOTHING_BESIDE = (
-    DecisionCause.BLIND,
-    DecisionCause.AT_GOAL,
-    DecisionCause.NO_WAY,
-    DecisionCause.LEARNER_FAILED,
+    *(DecisionCause.BLIND, DecisionCause.AT_GOAL, DecisionCause.NO_WAY),
+    *(DecisionCause.LEARNER, DecisionCause.LEARNER_FAILED),
 )
-"""Causes without a hypothetical action: no situation, or a stand that the robot itself decided."""
+"""Causes without a hypothetical action: no situation, or what the robot itself decided."""
 
 
 def headline(facts: DecisionFacts) -> str:
     """Return the robot's behaviour in a few words."""
     standing = standing_of(facts)
     if standing.reason is not StandReason.DRIVES:
-        return short_text(standing)
-    if facts.action is not None:
-        if facts.cause == DecisionCause.TEACHER:
-            return f"{facts.action}: {facts.teacher or 'a teacher'} drives"
-        return facts.action
-    if facts.cause == DecisionCause.DOUBT:
-        return "stands and asks: it doubts its action"
-    if facts.cause == DecisionCause.UNKNOWN:
-        return "stands and asks the way" if facts.asks_at == MID else "stands and asks"
-    return f"stands: {_STANDS.get(DecisionCause(facts.cause), facts.cause)}"
+        return short_text(standing) or f"stands and asks: {reason_text(standing)}"
+    if facts.cause == DecisionCause.TEACHER:
+        return f"{facts.action}: {facts.teacher or 'a teacher'} drives"
+    return facts.action or ""
 
 
 def format_decision(facts: DecisionFacts) -> str:
@@ -63,14 +44,19 @@ def format_decision(facts: DecisionFacts) -> str:
 
 
 def standing_of(facts: DecisionFacts) -> Standing:
-    """Return the guard's reason to stand, or the bumper contact; DRIVES in all other cases."""
+    """Return the reason to stand of the guard, or else of the decision; DRIVES if an action drives."""
     if facts.latched:
         return standing_latched(facts.reasons)
     if facts.cause == DecisionCause.TOUCHES or facts.action is not None:
         bumpers = touched_bumper(facts.granted, facts.reasons)
         if bumpers is not None:
             return Standing(bumpers, asks=facts.cause == DecisionCause.TOUCHES)
-    return DRIVES
+    return DRIVES if facts.action is not None else _standing_by(DecisionCause(facts.cause), facts, facts.stopped)
+
+
+def _standing_by(cause: DecisionCause, facts: DecisionFacts, stop: ActiveStop | None = None) -> Standing:
+    says = facts.trouble if cause is DecisionCause.LEARNER_FAILED else facts.plan_says
+    return standing_for(cause, facts.asks_at, stop, says)
 
 
 def format_reasons(facts: DecisionFacts) -> list[str]:
@@ -86,17 +72,12 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
         lines += [*_held(facts.basic), *_passed_over(facts.basic), *_doubts_a_little(facts.doubt)]
     elif facts.cause == DecisionCause.DOUBT:
         lines += _doubts(facts.basic, facts.doubt)
-    elif facts.cause == DecisionCause.TEACHER:
-        lines.append(f"{facts.teacher or 'A teacher'} drives: {facts.action}. No RLA was asked.")
-        lines += _autonomous_action(facts)
-    elif facts.cause == DecisionCause.LEARNER:
-        lines.append(f"A learner without RLAs drives: {facts.action}. It gives no reasons for its decisions.")
     elif facts.cause == DecisionCause.TOUCHES:
         lines += _touches(facts)
     elif facts.cause == DecisionCause.UNKNOWN:
         lines += _asks_the_way(facts.mid) if facts.asks_at == MID and facts.mid is not None else _asks(facts.basic)
     else:
-        lines.append(_stands(facts))
+        lines.append(_sentence(facts))
         lines += _autonomous_action(facts)
     return [*lines, *_slow_lesson(facts), *_broken_sensors(facts)]
 
@@ -115,23 +96,17 @@ def _broken_sensors(facts: DecisionFacts) -> list[str]:
     ]
 
 
-def _stands(facts: DecisionFacts) -> str:
-    match facts.cause:
-        case DecisionCause.BLIND:
-            age = "never came" if math.isinf(facts.infrared_age_s) else f"are {facts.infrared_age_s * 1000:.0f} ms old"
-            return f"The readings of the range sensors {age}: there is no situation to decide on, nor to ask about."
-        case DecisionCause.STOPPED:
-            return f"The robot was stopped: {stop_text(facts.stopped) or 'a teacher said so'}. It waits for Go."
-        case DecisionCause.UNATTENDED:
-            return "The robot knows what to do, but drives only while a teacher is there, and none is."
-        case DecisionCause.UNSAVED:
-            why = f" ({facts.trouble})" if facts.trouble else ""
-            return f"Lessons cannot be saved at the moment{why}: the robot stands until they can."
-        case DecisionCause.AT_GOAL | DecisionCause.NO_WAY:
-            return f"{facts.plan_says or _STANDS[DecisionCause(facts.cause)]}."
-        case DecisionCause.LEARNER_FAILED:
-            return f"The learner that decides failed{f' ({facts.trouble})' if facts.trouble else ''}: the robot stands."
-    return f"Cause: {facts.cause}."
+def _sentence(facts: DecisionFacts) -> str:
+    """Return the sentence of a cause that is not about RLAs."""
+    age = "never came" if math.isinf(facts.infrared_age_s) else f"are {facts.infrared_age_s * 1000:.0f} ms old"
+    return DecisionCause(facts.cause).sentence.format(
+        teacher=facts.teacher or "A teacher",
+        action=facts.action,
+        age=age,
+        stop=stop_text(facts.stopped) or "a teacher said so",
+        trouble=f" ({facts.trouble})" if facts.trouble else "",
+        plan=facts.plan_says or facts.cause,
+    )
 
 
 def _rla_drives(level: LevelFacts) -> list[str]:
@@ -249,10 +224,10 @@ def _autonomous_action(facts: DecisionFacts) -> list[str]:
     """Describe what the robot would do without the stop, the manual driving or the blocking cause."""
     if facts.cause in _NOTHING_BESIDE:
         return []
-    others = [each for each in facts.hindrances if each != facts.cause]
+    others = [DecisionCause(each) for each in facts.hindrances if each != facts.cause]
     unable = next((each for each in others if each in (DecisionCause.BLIND, DecisionCause.UNSAVED)), None)
     if unable is not None:
-        return [f"By itself it would stand: {_STANDS[DecisionCause(unable)]}."]
+        return [_would_stand(unable, facts)]
     if facts.asks_at == MID and facts.mid is not None:
         return [f"By itself it would ask the way: {_why_the_way(facts.mid)}."]
     nearest, leader = facts.basic.nearest, facts.basic.leader
@@ -261,7 +236,7 @@ def _autonomous_action(facts: DecisionFacts) -> list[str]:
     if DecisionCause.UNATTENDED in others:  # without a teacher it still asks about an unknown situation
         stands = DecisionCause.UNATTENDED if known else None
     if stands is not None:
-        return [f"By itself it would stand: {_STANDS[DecisionCause(stands)]}."]
+        return [_would_stand(stands, facts)]
     if nearest is None and facts.basic.count:
         return ["By itself it would do as its learner decides, which has no RLAs."]
     if nearest is None or leader is None:
@@ -269,6 +244,10 @@ def _autonomous_action(facts: DecisionFacts) -> list[str]:
     if known:
         return [f"By itself it would do as {format_rla(leader)} says, at {format_nearness(leader)}."]
     return [f"By itself it would ask: {_format_nearest(nearest)}."]
+
+
+def _would_stand(cause: DecisionCause, facts: DecisionFacts) -> str:
+    return f"By itself it would stand: {reason_text(_standing_by(cause, facts))}."
 
 
 def _why_the_way(mid: LevelFacts) -> str:

@@ -10,7 +10,7 @@ from hal.odometry import PlanePose
 from kurt2rt.channel.protocol.health import Trouble
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.core.decision.standing import StandReason
+from kurt2rt.core.decision.decision import Severity
 from kurt2rt.ros import messages as ros
 from kurt2rt.teacher.client.link_quality import LinkQuality
 from kurt2rt.teacher.terminal.terminal_text import format_state
@@ -61,13 +61,6 @@ _PLACE_M2, _HEADING_RAD2 = 0.01, 0.05
 _SPEED_M2_S2, _TURN_RAD2_S2 = 0.0004, 0.02
 """Variances of the speeds, from the resolution of the encoders over 50 ms and from the skidding."""
 
-_FINE = frozenset({StandReason.DRIVES, StandReason.AT_GOAL})
-_WAITS = frozenset(
-    {
-        *(StandReason.ASKS, StandReason.DOUBTS, StandReason.ASKS_THE_WAY, StandReason.STOPPED, StandReason.UNATTENDED),
-        *(StandReason.FRONT_BUMPER, StandReason.REAR_BUMPER, StandReason.BOTH_BUMPERS, StandReason.NO_WAY),
-    }
-)
 _LOST_AFTER_S = 0.5
 
 
@@ -136,12 +129,8 @@ def transform(pose: PlanePose, stamp: ros.Time) -> ros.TFMessage:
 
 def robot_status(state: State, hello: Hello) -> ros.DiagnosticStatus:
     """Return a diagnostic status of the robot: a warning if it waits for its teacher, an error if it has a fault."""
-    reason = state.standing.reason
-    level = ros.DiagnosticStatus.OK
-    if reason in _WAITS:
-        level = ros.DiagnosticStatus.WARN
-    elif state.trouble or reason not in _FINE:
-        level = ros.DiagnosticStatus.ERROR
+    severity = state.standing.reason.severity
+    level = ros.DiagnosticStatus.ERROR if state.trouble and severity is Severity.FINE else int(severity)
     return status(
         level,
         f"{hello.robot}: robot",

@@ -8,8 +8,8 @@ from kurt2rt.channel.protocol.hello import AppraisalName, Hello, MidIntroduction
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
 from kurt2rt.core.critic.critic import CriticState
-from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.decision.standing import GO_IN_TERMINAL, StandReason, question_text, standing_headline
+from kurt2rt.core.decision.decision import DecisionCause, StandReason
+from kurt2rt.core.decision.standing import GO_IN_TERMINAL, question_text, standing_headline
 from kurt2rt.core.outcome_text import neighbours_text
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import ASK, MID, rla_title

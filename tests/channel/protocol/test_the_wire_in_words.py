@@ -11,7 +11,8 @@ import pytest
 from kurt2rt.channel.protocol.codec import BODIES, PATHS, encode_state
 from kurt2rt.channel.protocol.health import HEALTH
 from kurt2rt.channel.protocol.limits import VERSION
-from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.decision.decision import StandReason
+from kurt2rt.core.decision.standing import Standing
 from kurt2rt.core.message_fields import Bytes, BytesUpTo, Flag, Float, Int, OneOf, Text, UpTo
 from kurt2rt.core.teaching.message_fields import GoalField
 from tests.channel.jumping_loop import run_jumping

@@ -2,7 +2,8 @@
 
 import pytest
 
-from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.decision.decision import StandReason
+from kurt2rt.core.decision.standing import Standing
 from kurt2rt.core.progress_meter import ProgressMeter
 from kurt2rt.core.teaching.commands import Resume, Stop
 from kurt2rt.core.tick_record import TickRecord

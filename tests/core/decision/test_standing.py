@@ -9,7 +9,7 @@ from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.channel.protocol.codec import decode_state, encode_state
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.decision import BY_KNOWLEDGE, Decision, DecisionCause
+from kurt2rt.core.decision.decision import BY_KNOWLEDGE, Decision, DecisionCause, StandReason
 from kurt2rt.core.decision.standing import (
     ASKS_AFTER_TICKS,
     DRIVES,
@@ -18,7 +18,6 @@ from kurt2rt.core.decision.standing import (
     LATCHED,
     Standing,
     StandingWatch,
-    StandReason,
     question_text,
     reason_text,
     short_text,

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from hal.guard_reason import GuardReason
 from hal.kurt2_settings import load_kurt2
 from hal.robot import STANDSTILL
-from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.decision.standing import StandReason, reason_text
+from kurt2rt.core.decision.decision import DecisionCause, StandReason
+from kurt2rt.core.decision.standing import reason_text
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.learner.learner import LearnerSetting, Why
 from kurt2rt.core.learner.learner_team import LearnerTeam

@@ -8,7 +8,8 @@ import pytest
 from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.server.channel import describe_robot
-from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.decision.decision import StandReason
+from kurt2rt.core.decision.standing import Standing
 from kurt2rt.ros import messages as ros
 from kurt2rt.teacher.ros.robot_messages import (
     Odometer,
