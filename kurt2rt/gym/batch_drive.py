@@ -150,8 +150,9 @@ def require_known(definition: SituationDefinition, names: Iterable[str], known: 
 
     Raises BatchRefusedError.
     """
-    if definition.wheel_speed_counts_per_m_s:
-        raise BatchRefusedError(f"situation {definition.name}: the batch has no wheel speeds", do=_ON_THE_BUS)
+    scale = definition.wheel_speed_counts_per_m_s
+    if strange := [each.name for each in definition.features if each.batch_kind(scale) is None]:
+        raise BatchRefusedError(f"situation {definition.name}: the batch has no {', '.join(strange)}", do=_ON_THE_BUS)
     unknown = [name for name in names if name not in known.actions]
     if unknown:
         raise BatchRefusedError(f"action {', '.join(unknown)}: the batch knows no taught actions", do=_ON_THE_BUS)

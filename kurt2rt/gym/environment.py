@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 
 from config.settings import SettingsError
 from hal.kurt2_settings import Kurt2Settings, load_kurt2
-from hal.robot import HIGHEST_COUNTS
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.perception.definition import SituationDefinition, WheelSpeed, load_situation
+from kurt2rt.core.perception.definition import SituationDefinition, load_situation
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.experiments.lockstep.engine import Engine
@@ -230,12 +229,8 @@ def observation_space(definition: SituationDefinition, robot: RobotSettings, *, 
 
     Sensor values lie between 0 and the converter's 1023 counts; a wheel speed between the guard's limits.
     """
-    wheel_speed = round(definition.wheel_speed_counts_per_m_s * robot.guard.maximum_speed_m_s)
-    bounds = [
-        # Gymnasium's checker warns of a value whose bounds are equal, as those of a wheel speed of scale 0 would be.
-        (-max(1, wheel_speed), max(1, wheel_speed)) if isinstance(feature, WheelSpeed) else (0, HIGHEST_COUNTS)
-        for feature in definition.features
-    ]
+    top_speed = round(definition.wheel_speed_counts_per_m_s * robot.guard.maximum_speed_m_s)
+    bounds = [feature.bounds(top_speed) for feature in definition.features]
     low, high = np.array(bounds * (2 if averages else 1), dtype=np.float64).T
     return Box(low, high, dtype=np.float64)
 

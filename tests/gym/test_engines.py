@@ -13,6 +13,8 @@ import kurt2rt.gym  # noqa: F401 - registers the environments
 from config.settings import SettingsError
 from hal.kurt2_settings import Kurt2Settings
 from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.experiments.lockstep.batch_mind import feature_table
 from kurt2rt.gym.batch_drive import BatchDrive, require_known
 from kurt2rt.gym.bus_drive import BusDrive
 from kurt2rt.gym.endings import Ending, read_endings
@@ -139,5 +141,7 @@ def test_batch_refuses_wheel_speeds_and_taught_actions() -> None:
     with pytest.raises(BatchRefusedError, match="action dance: the batch knows no taught actions"):
         require_known(definition, ["on", "dance"], known)
     scaled = definition.model_copy(update={"wheel_speed_counts_per_m_s": 5})
-    with pytest.raises(BatchRefusedError, match="the batch has no wheel speeds"):
+    with pytest.raises(BatchRefusedError, match="the batch has no wheel speed left, wheel speed right"):
         require_known(scaled, ["on"], known)
+    with pytest.raises(BatchRefusedError, match="a batch does not know wheel speed left in a situation"):
+        feature_table(scaled, ROBOT, np.ones(scaled.dimensions), load_task("wall_following"))

@@ -2,7 +2,8 @@
 
 import hashlib
 import json
-from collections.abc import Iterable
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Sequence
 from typing import Annotated, Literal
 
 import numpy as np
@@ -11,6 +12,8 @@ from pydantic import Field
 
 from config.settings import Settings, SettingsError, load_settings
 from config.settings_files import find_config
+from hal.robot import HIGHEST_COUNTS
+from simbridge.contracts.batch import FeatureKind
 
 AVERAGED = " (10 s average)"
 """Suffix of the names of averaged features."""
@@ -18,19 +21,64 @@ AVERAGED = " (10 s average)"
 Heading = Literal["front", "left", "right", "rear"]
 
 
-class Reading(Settings):
-    """Feature that is the count of one infra-red sensor, as a situation's file defines it."""
+class Feature(Settings, ABC):
+    """Feature as a situation's file defines it. A new kind is a class here, and stands in `AnyFeature`.
+
+    `scale`: the definition's `wheel_speed_counts_per_m_s`.
+    """
+
+    kind: str
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """Name shown to the teacher."""
+
+    @property
+    def sensors_used(self) -> tuple[str, ...]:
+        """Names of the distance sensors whose counts alone decide its value; none if anything else does."""
+        return ()
+
+    @abstractmethod
+    def expression(self, counts: Sequence[str]) -> str:
+        """Return Python for its whole number, of the `counts` of `sensors_used` and what `compile_features` names."""
+
+    @abstractmethod
+    def bounds(self, top_speed: int) -> tuple[int, int]:
+        """Return its lowest and its highest value; `top_speed`: greatest wheel speed times the scale."""
+
+    def batch_kind(self, scale: int) -> FeatureKind | None:  # noqa: ARG002 - for wheel speeds
+        """Return what a compiled batch computes, by the kind's name; None: the batch refuses the feature."""
+        return FeatureKind.__members__.get(self.kind.upper())
+
+
+class _OfCounts(Feature, ABC):
+    """Feature of the counts of distance sensors."""
+
+    def bounds(self, top_speed: int) -> tuple[int, int]:  # noqa: ARG002 - for wheel speeds
+        return 0, HIGHEST_COUNTS
+
+
+class Reading(_OfCounts):
+    """Count of one infra-red sensor."""
 
     kind: Literal["reading"]
     sensor: str
 
     @property
     def name(self) -> str:
-        """Name shown to the teacher."""
         return self.sensor
 
+    @property
+    def sensors_used(self) -> tuple[str, ...]:
+        return (self.sensor,)
 
-class Extreme(Settings):
+    def expression(self, counts: Sequence[str]) -> str:
+        """Return the count."""
+        return counts[0]
+
+
+class Extreme(_OfCounts):
     """Largest (nearest obstacle) or smallest count among sensors of one heading."""
 
     kind: Literal["maximum", "minimum"]
@@ -39,11 +87,19 @@ class Extreme(Settings):
 
     @property
     def name(self) -> str:
-        """Name shown to the teacher."""
         return f"{self.kind} {self.heading}"
 
+    @property
+    def sensors_used(self) -> tuple[str, ...]:
+        return self.sensors
 
-class Orientation(Settings):
+    def expression(self, counts: Sequence[str]) -> str:
+        """Return the extreme; max and min of a single number are an error."""
+        extreme = "max" if self.kind == "maximum" else "min"
+        return counts[0] if len(counts) == 1 else f"{extreme}({', '.join(counts)})"
+
+
+class Orientation(_OfCounts):
     """Difference of two sensors of one heading, 0 if negative: deviation of the wall from parallel."""
 
     kind: Literal["orientation"]
@@ -53,11 +109,19 @@ class Orientation(Settings):
 
     @property
     def name(self) -> str:
-        """Name shown to the teacher."""
         return f"orientation {self.heading} {self.nearer}>{self.farther}"
 
+    @property
+    def sensors_used(self) -> tuple[str, ...]:
+        return self.nearer, self.farther
 
-class WheelSpeed(Settings):
+    def expression(self, counts: Sequence[str]) -> str:
+        """Return the difference or 0."""
+        nearer, farther = counts
+        return f"{nearer} - {farther} if {nearer} > {farther} else 0"
+
+
+class WheelSpeed(Feature):
     """Set point of one side of the last driven action; constant while the robot waits."""
 
     kind: Literal["wheel_speed"]
@@ -65,11 +129,22 @@ class WheelSpeed(Settings):
 
     @property
     def name(self) -> str:
-        """Name shown to the teacher."""
         return f"wheel speed {self.side}"
 
+    def expression(self, counts: Sequence[str]) -> str:  # noqa: ARG002 - it has none
+        """Return the set point, which is scaled already."""
+        return "driven[0]" if self.side == "left" else "driven[1]"
 
-Feature = Annotated[Reading | Extreme | Orientation | WheelSpeed, Field(discriminator="kind")]
+    def bounds(self, top_speed: int) -> tuple[int, int]:
+        """Return the top speed of both directions, at least 1: checkers of Gymnasium warn of equal bounds."""
+        return -max(1, top_speed), max(1, top_speed)
+
+    def batch_kind(self, scale: int) -> FeatureKind | None:
+        """Return NOTHING for a scale of 0; a batch knows no others."""
+        return None if scale else FeatureKind.NOTHING
+
+
+AnyFeature = Annotated[Reading | Extreme | Orientation | WheelSpeed, Field(discriminator="kind")]
 
 
 class SituationDefinition(Settings):
@@ -81,7 +156,7 @@ class SituationDefinition(Settings):
 
     name: str
     history_steps: Annotated[int, Field(ge=1, le=100_000)]
-    features: Annotated[tuple[Feature, ...], Field(min_length=1)]
+    features: Annotated[tuple[AnyFeature, ...], Field(min_length=1)]
     wheel_speed_counts_per_m_s: Annotated[int, Field(ge=0, le=1000)]
     """Scale of the wheel-speed features; 0 removes them from all distances."""
 
@@ -99,18 +174,7 @@ class SituationDefinition(Settings):
     @property
     def sensors_used(self) -> frozenset[str]:
         """Names of all sensors that features read."""
-        used: set[str] = set()
-        for feature in self.features:
-            match feature:
-                case Reading():
-                    used.add(feature.sensor)
-                case Extreme():
-                    used.update(feature.sensors)
-                case Orientation():
-                    used.update((feature.nearer, feature.farther))
-                case WheelSpeed():
-                    continue
-        return frozenset(used)
+        return frozenset(name for feature in self.features for name in feature.sensors_used)
 
     def hash(self, sensors: tuple[str, ...], kind: str) -> str:
         """Return the fingerprint of definition, sensor order and kind of robot; other knowledge is refused."""

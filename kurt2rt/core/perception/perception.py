@@ -2,50 +2,27 @@
 
 import math
 import struct
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
-from kurt2rt.core.perception.definition import Extreme, Feature, Orientation, Reading, SituationDefinition, WheelSpeed
-
-Counts = tuple[int, ...]
+from hal.robot import SensorReadings, WheelSpeeds
+from kurt2rt.core.perception.definition import Feature, SituationDefinition
 
 
-class FeatureExtractor:
-    """Function from sensor counts to the features of a definition, as integers (paper, section VI.B.1)."""
+def compile_features(features: Iterable[Feature], sensors: Sequence[str]) -> Callable[..., tuple[int, ...]]:
+    """Return the function from `readings`, `driven` and the count of each sensor to the features (paper, VI.B.1).
 
-    def __init__(self, definition: SituationDefinition, sensors: tuple[str, ...]) -> None:
-        place = {name: index for index, name in enumerate(sensors)}
-        scale = definition.wheel_speed_counts_per_m_s
-        # One compiled expression takes a third of the time of one call per feature, each tick.
-        parameters = ", ".join(f"c{index}" for index in range(len(sensors)))
-        expressions = ", ".join(_expression(feature, place, scale) for feature in definition.features)
-        self._values: Callable[..., tuple[int, ...]] = eval(f"lambda driven, {parameters}: ({expressions},)")
-
-    def __call__(self, counts: Counts, driven: WheelSpeeds) -> tuple[int, ...]:
-        """Return the features of sensor counts, one per sensor, and of the last driven set points in m/s."""
-        return self._values(driven, *counts)
-
-
-def _expression(feature: Feature, place: Mapping[str, int], scale: int) -> str:
-    """Return a feature as a Python expression of `driven` and the counts of sensors, `c0` of the first."""
-    match feature:
-        case Reading():
-            return f"c{place[feature.sensor]}"
-        case Extreme():
-            if len(feature.sensors) == 1:  # max and min of a single number are an error
-                return f"c{place[feature.sensors[0]]}"
-            extreme = "max" if feature.kind == "maximum" else "min"
-            return f"{extreme}({', '.join(f'c{place[name]}' for name in feature.sensors)})"
-        case Orientation():
-            nearer, farther = f"c{place[feature.nearer]}", f"c{place[feature.farther]}"
-            return f"{nearer} - {farther} if {nearer} > {farther} else 0"
-        case WheelSpeed():
-            side = 0 if feature.side == "left" else 1
-            return f"round(driven[{side}] * {scale})" if scale else "0"
+    `readings` are SensorReadings, `driven` the last set points, left and right, by the scale of the definition.
+    """
+    count = {name: f"c{index}" for index, name in enumerate(sensors)}
+    # One compiled expression takes a third of the time of one call per feature, each tick.
+    values = [each.expression([count[name] for name in each.sensors_used]) for each in features]
+    parameters, tuple_of_all = ", ".join(count.values()), "".join(f"{value}, " for value in values)
+    compute: Callable[..., tuple[int, ...]] = eval(f"lambda readings, driven, {parameters}: ({tuple_of_all})")
+    return compute
 
 
 class Situation(NamedTuple):
@@ -123,17 +100,17 @@ class Perception:
     def __init__(self, definition: SituationDefinition, sensors: tuple[str, ...]) -> None:
         self.definition = definition
         width = len(definition.features)
-        self._extract = FeatureExtractor(definition, sensors)
+        self._compute = compile_features(definition.features, sensors)
         self._history = History(definition.history_steps, width)
         self._width = width
         # A struct writes the values into the vector in three quarters of the time of an array that is copied there.
         self._write: Callable[..., None] = struct.Struct(f"{width}d").pack_into
-        self._driven = STANDSTILL
+        self._driven = (0, 0)
 
     def restart(self) -> None:
         """Reset to the state after power-on: no averages, and wheel speeds of 0."""
         self._history.clear()
-        self._driven = STANDSTILL
+        self._driven = (0, 0)
 
     def perceive(self, readings: SensorReadings, *, history_frozen: bool) -> Situation:
         """Return the situation of this tick. Call it once per tick, because it adds a step to the averages.
@@ -141,7 +118,7 @@ class Perception:
         `history_frozen`: whether the averages stay as they are, because the robot waits or drives slowly.
         """
         vector = np.empty(2 * self._width)
-        self._write(vector, 0, *self._extract(readings.infrared_counts, self._driven))
+        self._write(vector, 0, *self._compute(readings, self._driven, *readings.infrared_counts))
         recent = vector[: self._width]
         if self._history.filled == 0 and readings.infrared_age_s < math.inf:
             # After power-on the present is the best estimate of the past.
@@ -153,4 +130,5 @@ class Perception:
 
     def remember_driven(self, wheel_speeds: WheelSpeeds) -> None:
         """Store the set points of the driven action; they are a feature until the next call."""
-        self._driven = wheel_speeds
+        if scale := self.definition.wheel_speed_counts_per_m_s:
+            self._driven = round(wheel_speeds.left_m_s * scale), round(wheel_speeds.right_m_s * scale)

@@ -12,15 +12,7 @@ from behaviors.turn_by_angle import TurnByAngle
 from hal.kurt2_settings import Kurt2Settings
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.learner.learner_team import LearnerTeam
-from kurt2rt.core.perception.definition import (
-    Extreme,
-    Feature,
-    Orientation,
-    Reading,
-    SituationDefinition,
-    feature_weights,
-    load_situation,
-)
+from kurt2rt.core.perception.definition import SituationDefinition, feature_weights, load_situation
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.episode import build_stuck_rule
 from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
@@ -34,7 +26,6 @@ from simbridge.contracts.batch import (
     CallbackMind,
     Choose,
     DriveSettings,
-    FeatureKind,
     FeatureTable,
     FixedSpeeds,
     FollowedSimulation,
@@ -264,28 +255,14 @@ def feature_table(
     place = {name: index for index, name in enumerate(settings.infrared.names)}
     kinds, sensors = [], []
     for feature in definition.features:
-        kind, names = _kind_and_sensors(feature, definition, task)
+        kind = feature.batch_kind(definition.wheel_speed_counts_per_m_s)
+        if kind is None:
+            raise refused(task, f"{feature.name} in a situation")
         kinds.append(kind)
-        sensors.append(tuple(place[name] for name in names))
+        sensors.append(tuple(place[name] for name in feature.sensors_used))
     recent, averages = weights[: len(kinds)].tolist(), weights[len(kinds) :].tolist()
     average_weights = tuple(averages) if any(averages) else ()
     return FeatureTable(tuple(kinds), tuple(sensors), tuple(recent), definition.history_steps, average_weights)
-
-
-def _kind_and_sensors(
-    feature: Feature, definition: SituationDefinition, task: TaskSettings
-) -> tuple[FeatureKind, tuple[str, ...]]:
-    match feature:
-        case Reading():
-            return FeatureKind.READING, (feature.sensor,)
-        case Extreme():
-            kind = FeatureKind.MAXIMUM if feature.kind == "maximum" else FeatureKind.MINIMUM
-            return kind, feature.sensors
-        case Orientation():
-            return FeatureKind.ORIENTATION, (feature.nearer, feature.farther)
-    if definition.wheel_speed_counts_per_m_s:
-        raise refused(task, "wheel speeds that count in a situation")
-    return FeatureKind.NOTHING, ()
 
 
 def refused(task: TaskSettings, what: str) -> BatchRefusedError:

@@ -5,11 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.robot import STANDSTILL
 from hal.robot_settings import InfraredSettings
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.perception.definition import SituationDefinition, WheelSpeed
-from kurt2rt.core.perception.perception import FeatureExtractor
+from kurt2rt.core.perception.definition import SituationDefinition
+from kurt2rt.core.perception.perception import compile_features
 from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
@@ -106,10 +105,10 @@ class _ChangedSituations:
     def __init__(self, facts: DecisionFacts, definition: SituationDefinition, law: InfraredSettings) -> None:
         self._counts = facts.infrared_counts
         self._here = np.array(facts.basic.vector)
-        self._extract = FeatureExtractor(definition, law.names)
+        follow = [feature for feature in definition.features if feature.sensors_used]
+        self._compute = compile_features(follow, law.names)
         self._width = len(definition.features)
-        features = enumerate(definition.features)
-        self._wheels = [place for place, feature in features if isinstance(feature, WheelSpeed)]
+        self._following = [place for place, feature in enumerate(definition.features) if feature.sensors_used]
         self._average_gain = 0.0 if facts.history_frozen else 1 / definition.history_steps
 
     def vectors(self, sensor: int, readings: list[int]) -> NDArray[np.float64]:
@@ -117,8 +116,8 @@ class _ChangedSituations:
         counts, width = self._counts, self._width
         vectors = np.tile(self._here, (len(readings), 1))
         for row, reading in enumerate(readings):
-            vectors[row, :width] = self._extract((*counts[:sensor], reading, *counts[sensor + 1 :]), STANDSTILL)
-        vectors[:, self._wheels] = self._here[self._wheels]
+            changed = *counts[:sensor], reading, *counts[sensor + 1 :]
+            vectors[row, self._following] = self._compute(None, None, *changed)
         vectors[:, width:] += self._average_gain * (vectors[:, :width] - self._here[:width])
         return vectors
 

@@ -8,15 +8,33 @@ from hypothesis import strategies as st
 
 from hal.robot import STANDSTILL, WheelSpeeds
 from hal.robot_settings import load_robot
-from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.perception.perception import FeatureExtractor
-from tests.core.perception.helpers import ALL_KINDS, EXTREMES, ORIENTATIONS, READINGS, SENSORS, definition
+from kurt2rt.core.perception.definition import Feature, SituationDefinition, load_situation
+from kurt2rt.core.perception.perception import Perception
+from tests.core.perception.helpers import ALL_KINDS, EXTREMES, ORIENTATIONS, READINGS, SENSORS, definition, sensed
 
 Features = Sequence[Mapping[str, object]]
 
 
-def extracted(features: Features, counts: tuple[int, ...], driven: WheelSpeeds = STANDSTILL) -> list[int]:
-    return list(FeatureExtractor(definition(features), SENSORS)(counts, driven))
+class Fresh(Feature):
+    kind: str = "fresh"
+
+    @property
+    def name(self) -> str:
+        return self.kind
+
+    def expression(self, _counts: Sequence[str]) -> str:
+        return "7 + round(readings.infrared_age_s)"
+
+    def bounds(self, _top_speed: int) -> tuple[int, int]:
+        return 7, 99
+
+
+def perceived(
+    situation: SituationDefinition, *counts: int, driven: WheelSpeeds = STANDSTILL, sensors: tuple[str, ...] = SENSORS
+) -> list[float]:
+    perception = Perception(situation, sensors)
+    perception.remember_driven(driven)
+    return list(perception.perceive(sensed(*counts), history_frozen=False).vector[: len(situation.features)])
 
 
 @pytest.mark.parametrize(
@@ -34,7 +52,7 @@ def extracted(features: Features, counts: tuple[int, ...], driven: WheelSpeeds =
 def test_features_of_each_kind_in_configured_order(
     features: Features, counts: tuple[int, ...], by_hand: list[int]
 ) -> None:
-    assert extracted(features, counts) == by_hand
+    assert perceived(definition(features), *counts) == by_hand
 
 
 @given(st.permutations(ALL_KINDS), st.tuples(*[st.integers(0, 1023)] * 4))
@@ -42,8 +60,8 @@ def test_features_follow_the_order_of_the_definition(
     order: list[Mapping[str, object]], counts: tuple[int, ...]
 ) -> None:
     driven = WheelSpeeds(0.2, -0.1)
-    alone = [extracted([feature], counts, driven)[0] for feature in order]
-    assert extracted(order, counts, driven) == alone
+    alone = [perceived(definition([feature]), *counts, driven=driven)[0] for feature in order]
+    assert perceived(definition(order), *counts, driven=driven) == alone
 
 
 def test_features_of_the_basic_situation_between_walls() -> None:
@@ -51,8 +69,7 @@ def test_features_of_the_basic_situation_between_walls() -> None:
     sensors = load_robot().infrared.names
     basic = load_situation("basic", sensors)
     counts = tuple(100 + 10 * n for n in range(1, 19))
-    values = FeatureExtractor(basic, sensors)(counts, WheelSpeeds(0.3, 0.3))
-    assert list(values) == [
+    assert perceived(basic, *counts, driven=WheelSpeeds(0.3, 0.3), sensors=sensors) == [
         *counts,
         *(210, 190),  # front: s9 to s11
         *(140, 110),  # left: s1 to s4
@@ -66,3 +83,9 @@ def test_features_of_the_basic_situation_between_walls() -> None:
     ]
     assert basic.dimensions == len(basic.names) == 72
     assert len(set(basic.names)) == 72
+
+
+def test_a_new_kind_follows_any_reading_but_not_in_a_batch() -> None:
+    new = definition(READINGS).model_copy(update={"features": (Fresh(), *definition(READINGS).features)})
+    assert perceived(new, 10, 20, 0, 0) == [7, 20, 10]
+    assert Fresh().batch_kind(0) is None
