@@ -4,6 +4,7 @@ from enum import IntEnum, StrEnum
 from typing import NamedTuple, Protocol, Self
 
 from config.errors import TextCode, UserError
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.active_rlas import Match
@@ -83,10 +84,15 @@ class StandReason(TextCode):
     """
 
     severity: Severity
+    guard: GuardReason | None
+    """Guard's reason whose texts these are; None if the guard does not hold the robot."""
 
-    def __init__(self, _value: str, _text: str = "", _do: str = "", severity: Severity = Severity.FAULT) -> None:
-        """Keep what TextCode does not."""
+    def __init__(self, _value: str, text: str = "", _do: str = "", severity: Severity = Severity.FAULT) -> None:
+        """Keep what TextCode does not, and take the texts of the guard's reason that stands in place of `text`."""
         self.severity = severity
+        self.guard = text if isinstance(text, GuardReason) else None
+        if self.guard is not None:
+            self.text, self.do = self.guard.text, self.guard.do
 
     DRIVES = ("drives", "", "", Severity.FINE)
     """The wheels turn."""
@@ -96,38 +102,33 @@ class StandReason(TextCode):
     """The situation of the basic level is known, but the robot doubts that the action is right."""
     ASKS_THE_WAY = ("asks the way", "it does not know the way", "Teach it which behaviour to follow", Severity.WAITS)
     """The situation of the mid level is unknown."""
-    FRONT_BUMPER = ("front bumper", "it touches something in front", "Drive it back", Severity.WAITS)
+    FRONT_BUMPER = ("front bumper", GuardReason.FRONT_BUMPER, "", Severity.WAITS)
     """The robot touches something in front and would drive on toward it."""
-    REAR_BUMPER = ("rear bumper", "it touches something behind", "Drive it forward", Severity.WAITS)
+    REAR_BUMPER = ("rear bumper", GuardReason.REAR_BUMPER, "", Severity.WAITS)
     BOTH_BUMPERS = ("both bumpers", "it touches something in front and behind", "Set it free", Severity.WAITS)
     STOPPED = ("stopped", "{stop}", "", Severity.WAITS)
     """A teacher stopped the robot, it lost its teacher, or it was just started."""
     UNATTENDED = ("unattended", "no teacher looks at it", "Take the robot", Severity.WAITS)
-    BLIND = ("blind", "its range sensors are silent", "Check its power and cable")
+    BLIND = ("blind", GuardReason.INFRARED_STALE)
     UNSAVED = ("unsaved", "lessons cannot be saved", "Look at the disk")
     AT_GOAL = ("at goal", "{says}", "", Severity.FINE)
     NO_WAY = ("no way", "{says}", "", Severity.WAITS)
-    COMPUTER_TOO_SLOW = ("computer too slow", "the computer was too slow{stall}")
-    """The watchdog braked because ticks had ceased; until a resume."""
-    BUS_LOST = ("bus lost", "its bus is lost", "Check its power and cable")
-    BUS_BLOCKED = ("bus blocked", "its bus carries nothing", "Check its power, cable and bit rate")
-    BUS_OFF = ("bus off", "its bus failed too often", "Check cable, termination and bit rate")
-    FOREIGN_CONTROL = ("foreign control", "another program drives it, too", "Find and end that one")
-    FOREIGN_TELEMETRY = ("foreign telemetry", "another program sends its readings, too", "Find and end that one")
-    WHEELS_DISOBEY = ("wheels disobey", "its wheels disobey", "Set them free, or switch it off and on")
-    INFRARED_FROZEN = ("range sensors frozen", "its range sensors are frozen", "Switch it off and on")
-    ROBOT_FAULT = ("robot fault", "it reports a fault of its own", "Mend what it names")
-    """The robot itself tells a fault; the health report has its text."""
+    COMPUTER_TOO_SLOW = ("computer too slow", GuardReason.TICKS_CEASED)
+    BUS_LOST = ("bus lost", GuardReason.BUS_LOST)
+    BUS_BLOCKED = ("bus blocked", GuardReason.BUS_BLOCKED)
+    BUS_OFF = ("bus off", GuardReason.BUS_OFF)
+    FOREIGN_CONTROL = ("foreign control", GuardReason.FOREIGN_CONTROL)
+    FOREIGN_TELEMETRY = ("foreign telemetry", GuardReason.FOREIGN_TELEMETRY)
+    WHEELS_DISOBEY = ("wheels disobey", GuardReason.WHEELS_DISOBEY)
+    INFRARED_FROZEN = ("range sensors frozen", GuardReason.INFRARED_FROZEN)
+    ROBOT_FAULT = ("robot fault", GuardReason.ROBOT_FAULT)
     HALTED = ("halted", "{says}")
     """The robot program stopped the robot, because it ends or waits for a dependency."""
-    LATE = ("late", "the computer is too slow", "End other work on it")
-    """Decisions are too old when they reach the guard."""
-    CLOCK = ("clock", "the computer's clock ran backwards", "Wait until it is right again")
-    """The computer's clock ran backwards."""
-    ENCODERS_SILENT = ("encoders silent", "its encoders are silent", "Check its power and cable")
-    BUMPERS_SILENT = ("bumpers silent", "its bumpers are silent", "Check its power and cable")
-    NOT_A_NUMBER = ("not a number", "the decided speed is not a number", "Teach it another action here")
-    """The decided speed is not a number."""
+    LATE = ("late", GuardReason.COMMAND_TOO_OLD)
+    CLOCK = ("clock", GuardReason.CLOCK_RAN_BACKWARDS)
+    ENCODERS_SILENT = ("encoders silent", GuardReason.ENCODER_STALE)
+    BUMPERS_SILENT = ("bumpers silent", GuardReason.BUMPER_STALE)
+    NOT_A_NUMBER = ("not a number", GuardReason.NOT_A_NUMBER)
     LEARNER_FAILED = ("learner failed", "its learner failed: {says}", "Mend it and begin again")
     """A learner raised an error or decided an unknown action, and is not asked again."""
 

@@ -5,7 +5,7 @@ Page, terminal, status line, status and channel all read it, and its texts at th
 
 from typing import NamedTuple
 
-from hal.guard_reason import GuardReason
+from hal.guard_reason import Effect, GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop
 from kurt2rt.core.decision.decision import ASKING, BY_KNOWLEDGE, Decision, DecisionCause, StandReason
@@ -31,27 +31,10 @@ class Standing(NamedTuple):
 
 DRIVES = Standing()
 
-LATCHED: dict[str, StandReason] = {
-    GuardReason.TICKS_CEASED: StandReason.COMPUTER_TOO_SLOW,
-    GuardReason.BUS_LOST: StandReason.BUS_LOST,
-    GuardReason.BUS_BLOCKED: StandReason.BUS_BLOCKED,
-    GuardReason.BUS_OFF: StandReason.BUS_OFF,
-    GuardReason.FOREIGN_CONTROL: StandReason.FOREIGN_CONTROL,
-    GuardReason.FOREIGN_TELEMETRY: StandReason.FOREIGN_TELEMETRY,
-    GuardReason.WHEELS_DISOBEY: StandReason.WHEELS_DISOBEY,
-    GuardReason.INFRARED_FROZEN: StandReason.INFRARED_FROZEN,
-    GuardReason.ROBOT_FAULT: StandReason.ROBOT_FAULT,
-}
-"""Reasons by the guard's code for an emergency stop; the program itself gave any other code."""
+_BY_GUARD: dict[str, StandReason] = {each.guard: each for each in StandReason if each.guard is not None}
+"""Reasons by the guard's code; the program itself gives any other code for an emergency stop."""
 
-_HELD: dict[str, StandReason] = {
-    GuardReason.INFRARED_STALE: StandReason.BLIND,
-    GuardReason.ENCODER_STALE: StandReason.ENCODERS_SILENT,
-    GuardReason.BUMPER_STALE: StandReason.BUMPERS_SILENT,
-    GuardReason.COMMAND_TOO_OLD: StandReason.LATE,
-    GuardReason.CLOCK_RAN_BACKWARDS: StandReason.CLOCK,
-    GuardReason.NOT_A_NUMBER: StandReason.NOT_A_NUMBER,
-}
+_HELD = {code: each for code, each in _BY_GUARD.items() if GuardReason(code).effect is Effect.BLOCKS}
 """Reasons by the guard's code for set points that it blocks tick by tick."""
 
 
@@ -86,7 +69,7 @@ def standing_latched(reasons: tuple[str, ...], *, asks: bool = False, stall_s: f
     `asks`: whether the robot also asks its teacher. `stall_s`: None if no stall caused the stop.
     """
     word = reasons[0] if reasons else ""
-    reason = LATCHED.get(word, StandReason.HALTED)
+    reason = _BY_GUARD.get(word, StandReason.HALTED)
     if reason is StandReason.HALTED:
         return Standing(reason, True, asks, says=word)
     return Standing(reason, True, asks, stall_s if reason is StandReason.COMPUTER_TOO_SLOW else None)
@@ -109,9 +92,8 @@ def touched_bumper(wheel_speeds: WheelSpeeds, reasons: tuple[str, ...]) -> Stand
 
 _GO_DOES_NOT_HELP = frozenset(
     (
-        *LATCHED.values(),
         *(StandReason.BLIND, StandReason.UNSAVED, StandReason.UNATTENDED, StandReason.LEARNER_FAILED),
-        *(StandReason.HALTED, StandReason.STOPPED),
+        StandReason.STOPPED,
     )
 )
 _SILENT = (GuardReason.INFRARED_STALE, GuardReason.ENCODER_STALE, GuardReason.BUMPER_STALE)
@@ -122,7 +104,7 @@ def hindrance_after_resume(standing: Standing, guard_result: GuardResult) -> Sta
 
     `standing`: after the tick. `guard_result`: of the tick, because silent sensors count as standing only later.
     """
-    if standing.reason in _GO_DOES_NOT_HELP:
+    if standing.needs_resume or standing.reason in _GO_DOES_NOT_HELP:
         return standing
     silent = next((_HELD[each] for each in guard_result.reasons if each in _SILENT), None)
     return None if silent is None else Standing(silent)
