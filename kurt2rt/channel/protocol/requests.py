@@ -48,6 +48,8 @@ class CommandRequest(Request):
 
     moves: ClassVar[bool] = False
     """True if a standing robot may drive after it: the state that the teacher saw must not be older than 1 s."""
+    typed: ClassVar[tuple[str, str] | None] = None
+    """Form and meaning of its line in a terminal, for the help; None if the terminal tells it itself."""
     boot: Boot
     command_id: CommandId
     """Random id, equal in all copies of the command."""
@@ -122,6 +124,7 @@ class SituationsRequest(Request):
 class SaveRequest(CommandRequest):
     """Request to copy the knowledge file into a file on the robot, which `/file` then reads."""
 
+    typed = ("save [LABEL]", "a copy of the knowledge, on the robot")
     label: Annotated[str, Text(LONGEST_TEXT)] = ""
     """Part of the copy's name."""
 
@@ -133,6 +136,7 @@ class ExportRequest(CommandRequest):
     It holds the RLAs as a table, or all knowledge as a package to give away.
     """
 
+    typed = ("export", "a table of the knowledge, on the robot")
     form: Annotated[str, OneOf((TABLE, PACKAGE))] = TABLE
 
 

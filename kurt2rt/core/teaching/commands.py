@@ -40,6 +40,8 @@ class SingleCommand:
     path: ClassVar[str]
     moves: ClassVar[bool] = False
     """True if a standing robot may drive after it: the state that the teacher saw must not be older than 1 s."""
+    typed: ClassVar[tuple[str, str] | None] = None
+    """Form and meaning of its line in a terminal, for the help; None if the terminal tells it itself."""
     command_id: str
     teacher: str
 
@@ -153,6 +155,7 @@ class ReplaceAction(SingleCommand):
     """Command that gives the RLA of an id another action (phase 2)."""
 
     path: ClassVar[str] = "/replace"
+    typed = ("replace N ACTION", "change the action of RLA N")
     rla_id: Number
     action: Name
 
@@ -162,6 +165,7 @@ class DeleteRla(SingleCommand):
     """Command that deletes the RLA of an id while the robot is running (phase 2)."""
 
     path: ClassVar[str] = "/delete"
+    typed = ("delete N", "end RLA N")
     rla_id: Number
 
 
@@ -201,6 +205,7 @@ class Undo(SingleCommand):
     """Command that undoes a lesson, or all of a hold: its RLA, name or reward is as before."""
 
     path: ClassVar[str] = "/undo"
+    typed = ("undo [LESSON]", "take the last lesson back, or the one of that id")
     lesson: Name | None = None
     """Command id of the lesson; None: the last lesson that stands."""
 
@@ -266,6 +271,7 @@ class SetPhase(SingleCommand):
     """Command that sets the training phase, 1 to 5; a stop after `seen_tick` refuses phase 5."""
 
     path: ClassVar[str] = "/phase"
+    typed = ("phase 1 to 5", "supervised, corrections, reinforcement, critic, autonomous")
     moves: ClassVar[bool] = True
     phase: PhaseNumber
     """Phase 5 drives without a teacher."""
@@ -278,6 +284,7 @@ class SetLessonSpeed(SingleCommand):
     """Command that sets the speed at which actions drive while a teacher teaches them (slow lessons)."""
 
     path: ClassVar[str] = "/lesson/speed"
+    typed = ("speed PERCENT", "slow lessons: in phases 1 and 2 it drives at 20 to 100 % of its speed")
     percent: Annotated[int, Int(SLOWEST_PERCENT, 100)]
     """Speed in per cent of their own."""
 
@@ -287,6 +294,7 @@ class BeginSession(SingleCommand):
     """Command that begins a named session; the clock of its teaching time starts."""
 
     path: ClassVar[str] = "/session/begin"
+    typed = ("begin [NAME]", "begin a session of teaching, with its clock")
     name: Name
 
 
@@ -295,6 +303,7 @@ class EndSession(SingleCommand):
     """Command that ends the session and its teaching time; the robot stands."""
 
     path: ClassVar[str] = "/session/end"
+    typed = ("end", "end the session; the robot stands")
 
 
 @dataclass(frozen=True, slots=True)
@@ -305,6 +314,7 @@ class Take(SingleCommand):
     """
 
     path: ClassVar[str] = "/take"
+    typed = ("take", "become the teacher")
     moves: ClassVar[bool] = True
 
 
@@ -313,6 +323,7 @@ class HandOver(SingleCommand):
     """Command that gives control authority up, to another teacher or to anyone."""
 
     path: ClassVar[str] = "/release"
+    typed = ("release [NAME]", "hand over to another one")
     to: Name | None = None
     """Next teacher; None: the first one that commands."""
 
@@ -339,6 +350,7 @@ class Resume(SingleCommand):
     """
 
     path: ClassVar[str] = "/resume"
+    typed = ("go", "the robot drives where it knows the way")
     moves: ClassVar[bool] = True
     seen_tick: int | None = None
     """A stop after this tick refuses the command."""

@@ -3,9 +3,9 @@
 import asyncio
 import math
 import threading
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Mapping, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Sequence
 from dataclasses import MISSING, fields
-from typing import Any, NamedTuple, TextIO, get_args
+from typing import Any, NamedTuple, TextIO
 
 import anyio
 from anyio.abc import TaskGroup
@@ -13,7 +13,7 @@ from anyio.streams.memory import MemoryObjectSendStream
 
 from kurt2rt.channel.protocol.health_text import lines_of
 from kurt2rt.channel.protocol.hello import Hello
-from kurt2rt.channel.protocol.requests import CommandRequest, ExportRequest, SaveRequest
+from kurt2rt.channel.protocol.requests import CommandRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.decision import ASKING
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
@@ -26,7 +26,6 @@ from kurt2rt.core.teaching.commands import (
     BeginSession,
     Correct,
     HandOver,
-    Resume,
     Reward,
     Seek,
     Single,
@@ -37,6 +36,7 @@ from kurt2rt.core.teaching.commands import (
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.terminal.terminal_text import (
+    KINDS,
     build_question,
     expects_answer,
     expects_mid_answer,
@@ -126,12 +126,6 @@ _RETRY_S = 0.5
 _POLL_S = 0.5
 _SILENT_AFTER_S = 1.5
 _MOST_DIGITS = 15
-
-_KINDS: Mapping[str, type[Single | CommandRequest]] = {
-    **{kind.path.split("/")[-1]: kind for kind in (*get_args(Single), SaveRequest, ExportRequest)},
-    "go": Resume,
-}
-"""Class of each command by its word, the end of its path on the wire; its fields follow in their order."""
 
 Say = Callable[[str], None]
 
@@ -371,9 +365,9 @@ class TerminalTeacher:
                 return robot.correct_earlier(action, float(seconds))
             case [appraisal] if any(appraisal == each.name for each in hello.appraisals):
                 return robot.send(Appraise, appraisal=appraisal, decision_tick=tick)
-            case [word, *values] if word in _KINDS:
-                fields = _fields_in(_KINDS[word], values, tick)
-                return None if fields is None else robot.send(_KINDS[word], **fields)
+            case [word, *values] if word in KINDS:
+                fields = _fields_in(KINDS[word], values, tick)
+                return None if fields is None else robot.send(KINDS[word], **fields)
         return None
 
     def _say_all(self, lines: Iterable[str]) -> None:
@@ -402,7 +396,7 @@ class TerminalTeacher:
 def _moves(text: str) -> bool:
     """Return whether a line may set the robot in motion."""
     word = text.split()[0]
-    return word in ("step", "hold") or (word in _KINDS and _KINDS[word].moves)
+    return word in ("step", "hold") or (word in KINDS and KINDS[word].moves)
 
 
 def _fields_in(kind: type[Single | CommandRequest], values: Sequence[str], tick: int | None) -> dict[str, Any] | None:

@@ -1,11 +1,13 @@
 """Texts of the teacher's terminal."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
+from typing import get_args
 
 from kurt2rt.channel.protocol.hello import AppraisalName, Hello, MidIntroduction
 from kurt2rt.channel.protocol.lesson_list import LessonLine
+from kurt2rt.channel.protocol.requests import CommandRequest, ExportRequest, SaveRequest
 from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
 from kurt2rt.core.critic.critic import CriticState
 from kurt2rt.core.decision.decision import DecisionCause, StandReason
@@ -13,6 +15,7 @@ from kurt2rt.core.decision.standing import GO_IN_TERMINAL, question_text, standi
 from kurt2rt.core.outcome_text import neighbours_text
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import ASK, MID, rla_title
+from kurt2rt.core.teaching.commands import Resume, Single
 from kurt2rt.core.teaching.question import FeatureDifference, MidQuestion, Question
 
 HISTORY = "history"
@@ -22,21 +25,21 @@ LOUD_FROM = 4.0
 _HELP = """\
 an action                answers the robot's question, or corrects what it does
 (just Enter), stop       the robot stands until you type go; it overtakes all other commands
-go                       the robot drives where it knows the way
 step ACTION [SECONDS]    one action for half a second, or as long as you say; teaches nothing
 hold ACTION SECONDS      does the action, and is taught it in the situations on the way; then it drives on
 rewind SECONDS ACTION    corrects what it did that long before it stopped (up to 10 s)
 +, -                     reward or punish the action that drives
-undo [LESSON], lessons   take the last lesson back, or the one of that id; show the last ten
-replace N ACTION, delete N     change or end RLA N
-phase 1 to 5             supervised, corrections, reinforcement, critic, autonomous
-speed PERCENT            slow lessons: in phases 1 and 2 it drives at 20 to 100 % of its speed
-begin [NAME], end        a session of teaching, with its clock
-save [LABEL], export     a copy of the knowledge, or a table of it, on the robot
+lessons                  show the last ten lessons
 health                   late ticks, sensors, bus, disk; faults and their cures
-take, release            become the teacher; hand over to another one
 help, quit"""
 _PURSUE_HELP = "pursue NAME              follow another taught behaviour; lessons are about the one that is followed"
+KINDS: Mapping[str, type[Single | CommandRequest]] = {
+    **{kind.path.split("/")[-1]: kind for kind in (*get_args(Single), SaveRequest, ExportRequest)},
+    "go": Resume,
+}
+"""Class of each command by its word, the end of its path on the wire; its fields follow in their order."""
+
+_PLAIN_HELP = "\n".join(f"{kind.typed[0]:<24} {kind.typed[1]}" for kind in dict.fromkeys(KINDS.values()) if kind.typed)
 _CRITIC_HELP = """\
 an appraisal             teaches the critic the value of this situation (phase 4)
 critic                   its opinion, its agreement with you, its last change"""
@@ -60,7 +63,7 @@ def help_lines(hello: Hello) -> tuple[str, ...]:
     elif len(hello.behaviours) > 1:
         more.append(_PURSUE_HELP)
     more += [_GOAL_HELP] if hello.seeks else []
-    return (_HELP, *more, *name_lines(hello))
+    return (_HELP, _PLAIN_HELP, *more, *name_lines(hello))
 
 
 def name_lines(hello: Hello) -> tuple[str, ...]:
