@@ -8,25 +8,18 @@ from hypothesis import strategies as st
 
 from hal.robot import STANDSTILL, WheelSpeeds
 from hal.robot_settings import load_robot
-from kurt2rt.core.perception.definition import Feature, SituationDefinition, load_situation
+from kurt2rt.core.perception.definition import Reading, SituationDefinition, load_situation
 from kurt2rt.core.perception.perception import Perception
 from tests.core.perception.helpers import ALL_KINDS, EXTREMES, ORIENTATIONS, READINGS, SENSORS, definition, sensed
 
 Features = Sequence[Mapping[str, object]]
 
 
-class Fresh(Feature):
-    kind: str = "fresh"
-
-    @property
-    def name(self) -> str:
-        return self.kind
+class Fresh(Reading):
+    kind: str = "fresh"  # type: ignore[assignment]
 
     def expression(self, _counts: Sequence[str]) -> str:
         return "7 + round(readings.infrared_age_s)"
-
-    def bounds(self, _top_speed: int) -> tuple[int, int]:
-        return 7, 99
 
 
 def perceived(
@@ -86,6 +79,6 @@ def test_features_of_the_basic_situation_between_walls() -> None:
 
 
 def test_a_new_kind_follows_any_reading_but_not_in_a_batch() -> None:
-    new = definition(READINGS).model_copy(update={"features": (Fresh(), *definition(READINGS).features)})
-    assert perceived(new, 10, 20, 0, 0) == [7, 20, 10]
-    assert Fresh().batch_kind(0) is None
+    fresh = Fresh(sensor="a")
+    assert perceived(definition().model_copy(update={"features": (fresh,)}), 10, 20, 0, 0) == [7]
+    assert fresh.batch_kind(0) is None
