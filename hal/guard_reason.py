@@ -31,7 +31,6 @@ class GuardReason(TextCode):
 
     NOT_A_NUMBER = ("not a number", "the decided speed is not a number", "Teach it another action here", Effect.BLOCKS)
     COMMAND_TOO_OLD = ("command too old", "the computer is too slow", "End other work on it", Effect.BLOCKS)
-    """Decisions are too old when they reach the guard."""
     CLOCK_RAN_BACKWARDS = (
         "clock ran backwards",
         "the computer's clock ran backwards",
@@ -60,7 +59,6 @@ class GuardReason(TextCode):
     TICKS_CEASED = ("ticks ceased", "the computer was too slow{stall}")
     """The watchdog braked because ticks had ceased; `stall` is for how long."""
     CLOSED = "closed"
-    """The driver was closed."""
     SERVICE_ENDS = "the service ends"
     RUN_OVER = "the run is over"
     """A simulated run has ended."""

@@ -163,21 +163,17 @@ class DecisionCause(StrEnum):
         StandReason.BLIND,
         "The readings of the range sensors {age}: there is no situation to decide on, nor to ask about.",
     )
-    """The infra-red readings are old or missing, so there is no situation to decide on or to ask about."""
     STOPPED = ("stopped", StandReason.STOPPED, "The robot was stopped: {stop}. It waits for Go.")
-    """A teacher stopped the robot."""
     UNATTENDED = (
         "unattended",
         StandReason.UNATTENDED,
         "The robot knows what to do, but drives only while a teacher is there, and none is.",
     )
-    """The situation is known, but the teacher whose presence is required is absent."""
     UNSAVED = (
         "unsaved",
         StandReason.UNSAVED,
         "Lessons cannot be saved at the moment{trouble}: the robot stands until they can.",
     )
-    """Lessons cannot be saved; the robot stands until they are."""
     AT_GOAL = ("at goal", StandReason.AT_GOAL, "{plan}.")
     """The robot has reached its goal."""
     TOUCHES = ("touches", StandReason.FRONT_BUMPER)

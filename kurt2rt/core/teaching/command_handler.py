@@ -165,7 +165,8 @@ class CommandHandler:
         `blind`: whether the range sensors are silent. `unsaved`: whether lessons cannot be saved.
         """
         unattended = self.requires_teacher and not self.authority.is_present(tick)
-        return tuple(compress(_BLOCKING, (self.stops.active is not None, blind, unsaved, unattended)))
+        holds = (self.stops.active is not None, blind, unsaved, unattended)
+        return tuple(compress(_BLOCKING, holds)) if True in holds else ()
 
     def forget_obstacles(self) -> None:
         """Forget the obstacles that the basic level remembers, because the robot was set down elsewhere."""
