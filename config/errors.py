@@ -18,10 +18,7 @@ class ExitCode(IntEnum):
 
 
 class TextCode(StrEnum):
-    """Base of codes that are told to a person: each member carries its text.
-
-    A member may have more values, which the subclass keeps in its `__init__`.
-    """
+    """Base of codes that are told to a person: each member carries its text; more values go to a subclass's init."""
 
     text: str
     """Fact or fault, with the fields of its case in braces."""

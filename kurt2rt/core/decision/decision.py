@@ -1,7 +1,7 @@
 """Decision of one tick: wheel speeds, their cause, and the RLAs that were compared; what a level and a plan add."""
 
 from enum import IntEnum, StrEnum
-from typing import NamedTuple, Protocol, Self
+from typing import NamedTuple, Protocol
 
 from config.errors import TextCode, UserError
 from hal.guard_reason import GuardReason
@@ -133,65 +133,61 @@ class StandReason(TextCode):
     """A learner raised an error or decided an unknown action, and is not asked again."""
 
 
-class DecisionCause(StrEnum):
+class DecisionCause(TextCode):
     """Code for why a decision sets these wheel speeds: what drives, or why the robot stands.
 
-    Its sentence is what `kurt2rt why` says of it, with fields in braces; empty if the RLAs tell more.
+    Its text is the sentence of `kurt2rt why`; empty if the RLAs tell more.
     """
 
     stands: StandReason
     """Reason of a robot that the guard does not hold."""
-    sentence: str
 
-    def __new__(cls, value: str, stands: StandReason = StandReason.DRIVES, sentence: str = "") -> Self:
-        """Make a member of a code, the standing that follows, and its sentence."""
-        member = str.__new__(cls, value)
-        member._value_ = value
-        member.stands, member.sentence = stands, sentence
-        return member
+    def __init__(self, _value: str, _text: str = "", _do: str = "", stands: StandReason = StandReason.DRIVES) -> None:
+        """Keep what TextCode does not."""
+        self.stands = stands
 
     RLA = "rla"
     """The situation lies inside the radius of the nearest RLA, whose action drives."""
     HELD = "held"
     """Another RLA is nearest now, but the minimum time of the action before is not over."""
-    TEACHER = ("teacher", StandReason.DRIVES, "{teacher} drives: {action}. No RLA was asked.")
+    TEACHER = ("teacher", "{teacher} drives: {action}. No RLA was asked.")
     """A teacher drives by hand, or a reference policy drives."""
-    UNKNOWN = ("unknown", StandReason.ASKS)
+    UNKNOWN = ("unknown", "", "", StandReason.ASKS)
     """No RLA is near enough; the robot stands and asks."""
     BLIND = (
         "blind",
-        StandReason.BLIND,
         "The readings of the range sensors {age}: there is no situation to decide on, nor to ask about.",
+        "",
+        StandReason.BLIND,
     )
-    STOPPED = ("stopped", StandReason.STOPPED, "The robot was stopped: {stop}. It waits for Go.")
+    STOPPED = ("stopped", "The robot was stopped: {stop}. It waits for Go.", "", StandReason.STOPPED)
     UNATTENDED = (
         "unattended",
-        StandReason.UNATTENDED,
         "The robot knows what to do, but drives only while a teacher is there, and none is.",
+        "",
+        StandReason.UNATTENDED,
     )
     UNSAVED = (
         "unsaved",
-        StandReason.UNSAVED,
         "Lessons cannot be saved at the moment{trouble}: the robot stands until they can.",
+        "",
+        StandReason.UNSAVED,
     )
-    AT_GOAL = ("at goal", StandReason.AT_GOAL, "{plan}.")
+    AT_GOAL = ("at goal", "{plan}.", "", StandReason.AT_GOAL)
     """The robot has reached its goal."""
-    TOUCHES = ("touches", StandReason.FRONT_BUMPER)
+    TOUCHES = ("touches", "", "", StandReason.FRONT_BUMPER)
     """An RLA pushes toward what a bumper touches and the guard lets no wheel turn; the robot asks."""
-    DOUBT = ("doubt", StandReason.DOUBTS)
+    DOUBT = ("doubt", "", "", StandReason.DOUBTS)
     """The situation lies inside the radius of the nearest RLA, but the robot doubts its action; it stands and asks."""
-    NO_WAY = ("no way", StandReason.NO_WAY, "{plan}.")
+    NO_WAY = ("no way", "{plan}.", "", StandReason.NO_WAY)
     """No taught way leads from here to the goal."""
-    LEARNER = (
-        "learner",
-        StandReason.DRIVES,
-        "A learner without RLAs drives: {action}. It gives no reasons for its decisions.",
-    )
+    LEARNER = ("learner", "A learner without RLAs drives: {action}. It gives no reasons for its decisions.")
     """A learner that is no RLA system knows the situation, and its action drives."""
     LEARNER_FAILED = (
         "learner failed",
-        StandReason.LEARNER_FAILED,
         "The learner that decides failed{trouble}: the robot stands.",
+        "",
+        StandReason.LEARNER_FAILED,
     )
     """A learner raised an error or decided an unknown action; the robot stands."""
 

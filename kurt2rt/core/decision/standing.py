@@ -90,12 +90,7 @@ def touched_bumper(wheel_speeds: WheelSpeeds, reasons: tuple[str, ...]) -> Stand
     return StandReason.FRONT_BUMPER if front else StandReason.REAR_BUMPER if rear else None
 
 
-_GO_DOES_NOT_HELP = frozenset(
-    (
-        *(StandReason.BLIND, StandReason.UNSAVED, StandReason.UNATTENDED, StandReason.LEARNER_FAILED),
-        StandReason.STOPPED,
-    )
-)
+_GO_DOES_NOT_HELP = (StandReason.BLIND, StandReason.UNSAVED, StandReason.UNATTENDED, StandReason.LEARNER_FAILED)
 _SILENT = (GuardReason.INFRARED_STALE, GuardReason.ENCODER_STALE, GuardReason.BUMPER_STALE)
 
 

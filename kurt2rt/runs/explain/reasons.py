@@ -99,7 +99,7 @@ def _broken_sensors(facts: DecisionFacts) -> list[str]:
 def _sentence(facts: DecisionFacts) -> str:
     """Return the sentence of a cause that is not about RLAs."""
     age = "never came" if math.isinf(facts.infrared_age_s) else f"are {facts.infrared_age_s * 1000:.0f} ms old"
-    return DecisionCause(facts.cause).sentence.format(
+    return DecisionCause(facts.cause).text.format(
         teacher=facts.teacher or "A teacher",
         action=facts.action,
         age=age,
