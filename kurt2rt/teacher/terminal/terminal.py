@@ -55,18 +55,10 @@ from kurt2rt.teacher.terminal.terminal_text import (
 )
 
 
-def mid_command(
-    robot: TeacherClient, hello: Hello, words: Sequence[str], state: State | None
-) -> Awaitable[Answer] | None:
-    """Return the sending of a mid-level command in a line of `words`; None if the line is no such command.
-
-    `state`: the newest one when the line was typed. Awaiting the result raises NoAnswerError.
-    """
-    command = None if hello.mid is None else _lesson(robot, hello, words, state)
-    return _goal(robot, words) if command is None and hello.seeks else command
-
-
 def _lesson(robot: TeacherClient, hello: Hello, words: Sequence[str], state: State | None) -> Awaitable[Answer] | None:
+    """Return the sending of a lesson of the mid level in a line of `words`; None if the line is none."""
+    if hello.mid is None:
+        return None
     tick = None if state is None else state.tick
     match words:
         case [behaviour] if _means_behaviour(behaviour, hello, state):
@@ -78,8 +70,8 @@ def _lesson(robot: TeacherClient, hello: Hello, words: Sequence[str], state: Sta
     return None
 
 
-def _goal(robot: TeacherClient, words: Sequence[str]) -> Awaitable[Answer] | None:
-    match words:
+def _goal(robot: TeacherClient, hello: Hello, words: Sequence[str]) -> Awaitable[Answer] | None:
+    match words if hello.seeks else ():
         case ["seek"]:
             return robot.send(StopSeeking)
         case ["seek", "rla", rla_id] if rla_id.isdecimal() and len(rla_id) <= _MOST_DIGITS:
@@ -318,7 +310,8 @@ class TerminalTeacher:
         robot, hello, state = self._robot, self._hello, line.state
         assert hello is not None, "no line is executed before the robot was met"
         words = line.text.split()
-        command = mid_command(robot, hello, words, state) or self._command(words, hello, state)
+        command = _lesson(robot, hello, words, state) or _goal(robot, hello, words)
+        command = command or self._command(words, hello, state)
         if command is not None:
             await self._send(command)
             return
