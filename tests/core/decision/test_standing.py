@@ -123,10 +123,6 @@ def test_a_robot_without_its_teacher_waits_for_no_go() -> None:
     assert desk.record.standing == DRIVES
 
 
-_ASK = (StandReason.ASKS, StandReason.DOUBTS, StandReason.ASKS_THE_WAY)
-"""Reasons of a question, which a status line words itself."""
-
-
 @pytest.mark.parametrize("reason", list(StandReason))
 def test_every_reason_has_a_text_of_one_or_two_short_sentences(reason: StandReason) -> None:
     for needs_go in (False, True):
@@ -137,7 +133,7 @@ def test_every_reason_has_a_text_of_one_or_two_short_sentences(reason: StandReas
         if reason is not StandReason.DRIVES:
             assert reason_text(standing) in text
             assert (GO_ON_PAGE in text) is needs_go
-            assert short_text(standing) or (not needs_go and reason in _ASK)
+            assert short_text(standing) or (not needs_go and reason.value in ("asks", "doubts", "asks the way"))
 
 
 def test_a_question_waits_while_the_guard_has_latched() -> None:
