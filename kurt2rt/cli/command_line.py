@@ -37,7 +37,7 @@ _PANELS = {
     "Research and more": {
         "study": "Measure many robots: the paper, phases, new worlds, doubt.",
         "plugin": "List, show and begin plug-ins: parts of other authors.",
-        "docs": "List the pages of the documentation, or read one in the terminal.",
+        "docs": "List the pages of the documentation, or read one here.",
     },
 }
 """Commands by the group of the help that lists them; each is a function, or a group of its own, of that name in its

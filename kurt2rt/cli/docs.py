@@ -18,7 +18,7 @@ def docs(
         str | None, typer.Argument(help="Page to read, such as handbook; without one, all are listed.")
     ] = None,
 ) -> None:
-    """List the pages of the documentation, or read one in the terminal.
+    """List the pages of the documentation, or read one here.
 
     Needs no network. A pipe or file gets the page as Markdown. The list ends with
     the folder of the pages and their pictures.
