@@ -1,5 +1,7 @@
 """Base of the errors that a user sees, in one line each, and the exit codes of the programs."""
 
+from collections.abc import Iterable
+from difflib import get_close_matches
 from enum import IntEnum, StrEnum
 from string import Formatter
 from typing import ClassVar, Self
@@ -71,3 +73,8 @@ class CodedError(UserError):
         """Fill the gaps in the code's texts with `fields`; `where` is as in `UserError`."""
         super().__init__(code.text.format_map(fields), where=where, do=code.do.format_map(fields))
         self.code = code
+
+
+def guess(word: str, names: Iterable[str]) -> str:
+    """Return "; did you mean NAME?" with the name most like a mistyped word; empty if none is like it."""
+    return "".join(f"; did you mean {name}?" for name in get_close_matches(word, list(names), n=1))

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import lru_cache, reduce
 from importlib import import_module, invalidate_caches
 from importlib.metadata import EntryPoint, entry_points
@@ -15,7 +14,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
 
-from config.errors import UserError
+from config.errors import UserError, guess
 
 OWN_PACKAGES = ("config", "hal", "behaviors", "simbridge", "kurt2rt")
 """Top-level packages of the program; a part of any other one is a plug-in."""
@@ -149,11 +148,10 @@ class PluginKind:
         return Plugin(self.group, name, name, "")
 
     def _unknown(self, name: str, names: list[str]) -> UnknownPluginError:
-        meant = "".join(f"; did you mean {each}?" for each in get_close_matches(name, names, n=1))
         return UnknownPluginError(
             f"there is no such {self.one}",
             where=self._where(name),
-            do=f"give module:Name, or one of: {', '.join(names)}{meant}",
+            do=f"give module:Name, or one of: {', '.join(names)}{guess(name, names)}",
         )
 
     def _where(self, name: str) -> str:

@@ -4,7 +4,6 @@ import json
 import re
 import stat
 from collections.abc import Mapping
-from difflib import get_close_matches
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar, get_args
@@ -13,7 +12,7 @@ import yaml
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
-from config.errors import UserError
+from config.errors import UserError, guess
 
 
 class SettingsError(UserError, ValueError):
@@ -240,8 +239,7 @@ def _explain(problem: ErrorDetails, schema: type[Settings]) -> str:
     key = ".".join(str(part) for part in problem["loc"]) or "(whole file)"
     if problem["type"] == "extra_forbidden":
         allowed = problem.get("ctx", {}).get("allowed") or ", ".join(keys_at(schema, problem["loc"][:-1]))
-        near = get_close_matches(str(problem["loc"][-1]), allowed.split(", "), n=1)
-        return f"{key}: no such key; allowed here: {allowed}{''.join(f'; did you mean {each}?' for each in near)}"
+        return f"{key}: no such key; allowed here: {allowed}{guess(str(problem['loc'][-1]), allowed.split(', '))}"
     if problem["type"] == "missing":
         return f"{key}: this key is missing"
     if problem["type"] == "union_tag_not_found":

@@ -1,11 +1,11 @@
 """Places of settings files: shipped, of a robot's plug-in, or kept with a run."""
 
 import hashlib
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Final
 
 from config import CONFIG_DIR
+from config.errors import guess
 from config.plugins import PluginError, PluginKind, UnknownPluginError, shelf
 from config.robot_plugins import ROBOTS, find_robot_kind, is_robot
 from config.settings import SettingsError
@@ -93,11 +93,10 @@ def find_config(kind: str, name_or_path: str) -> Path:
             plugins = "module:NAME, "
         except PluginError as error:
             raise SettingsError(error.what, where=error.where, do=error.do) from error
-    meant = "".join(f"; did you mean {name}?" for name in get_close_matches(given.stem, names, n=1))
     raise SettingsError(
         "no such file" if given.suffix in YAML_SUFFIXES else f"no such name in {kind}",
         where=name_or_path,
-        do=f"give {plugins}the path of a .yaml file, or one of: {', '.join(names)}{meant}",
+        do=f"give {plugins}the path of a .yaml file, or one of: {', '.join(names)}{guess(given.stem, names)}",
     )
 
 

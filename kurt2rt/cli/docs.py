@@ -1,6 +1,5 @@
 """`kurt2rt docs`: the documentation's pages, which every installation carries."""
 
-from difflib import get_close_matches
 from importlib import metadata
 from pathlib import Path
 from typing import Annotated
@@ -8,7 +7,7 @@ from typing import Annotated
 import typer
 from rich.markdown import Markdown
 
-from config.errors import UserError
+from config.errors import UserError, guess
 from kurt2rt.cli.tables import console_of
 from kurt2rt.platform.text_table import TextTable, print_whole
 
@@ -29,24 +28,24 @@ def docs(
         kurt2rt docs handbook
     """
     folder = _folder()
-    pages = {path.stem: path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.md"))}
+    pages = {path.stem: path for path in sorted(folder.glob("*.md"))}
     console = console_of()
     if page is None:
         table = TextTable()
         table.add_column("page", whole=True)
         table.add_column("title")
-        for name, text in pages.items():
-            table.add_row(name, text.splitlines()[0].removeprefix("# "))
+        for name, path in pages.items():
+            table.add_row(name, path.read_text(encoding="utf-8").splitlines()[0].removeprefix("# "))
         print_whole(console, table, f"folder  {folder}")
         return
     if page not in pages:
-        meant = "".join(f"; did you mean {each}?" for each in get_close_matches(page, pages, n=1))
-        raise UserError("no such page", where=page, do=f"one of: {', '.join(pages)}{meant}")
+        raise UserError("no such page", where=page, do=f"one of: {', '.join(pages)}{guess(page, pages)}")
+    text = pages[page].read_text(encoding="utf-8")
     if not console.is_terminal:
-        typer.echo(pages[page], nl=False)
+        typer.echo(text, nl=False)
         return
     with console.pager(styles=True):
-        console.print(Markdown(pages[page]))
+        console.print(Markdown(text))
 
 
 def _folder() -> Path:

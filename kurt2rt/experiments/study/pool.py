@@ -1,6 +1,5 @@
 """Runner of a study: jobs in waves, of which the missing ones run in parallel processes or on other machines."""
 
-import gc
 import multiprocessing
 import os
 import signal
@@ -19,7 +18,7 @@ from threadpoolctl import threadpool_limits
 
 from config.errors import ExitCode, UserError
 from kurt2rt.experiments.study.jobs import Progress, Results, StoredJob, StudyError
-from kurt2rt.platform.gc_control import freeze_survivors
+from kurt2rt.platform.gc_control import freeze_survivors, unfrozen_at_end
 
 _LOOK_EVERY_S = 0.5
 _TELL_EVERY_S = 5.0
@@ -40,8 +39,7 @@ class PoolProgress(NamedTuple):
 
 def _run_here(jobs: Sequence[StoredJob], on_progress: Callable[[PoolProgress], None]) -> None:
     before_s = 0.0
-    frozen_before = gc.get_freeze_count()
-    try:
+    with unfrozen_at_end():
         for job in jobs:
             on_progress(PoolProgress(before_s, (job.name,)))
 
@@ -52,9 +50,6 @@ def _run_here(jobs: Sequence[StoredJob], on_progress: Callable[[PoolProgress], N
             with threadpool_limits(limits=1), _named(job):
                 job.run(_now_and_then(tell))
             before_s += job.robot_time_s
-    finally:
-        if frozen_before == 0:  # a caller keeps its frozen objects
-            gc.unfreeze()
     on_progress(PoolProgress(before_s, ()))
 
 
