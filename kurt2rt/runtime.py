@@ -38,16 +38,14 @@ from kurt2rt.core.rla.contradiction import GuessedLessons
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import CRITIC, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.rla.statistics import Statistics, StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
-from kurt2rt.core.teaching.goal_commands import GoalCommands
-from kurt2rt.core.teaching.handler_parts import HandlerParts
 from kurt2rt.core.teaching.inbox import RobotRepositioned, TeacherInbox
+from kurt2rt.core.teaching.knowledge_updater import HandlerParts
 from kurt2rt.core.teaching.late_press import TeacherDelay
-from kurt2rt.core.teaching.mid_lessons import MidLessons
+from kurt2rt.core.teaching.mid_commands import MidCommands
 from kurt2rt.core.tick import Tick
 from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord
@@ -225,8 +223,7 @@ class _Assembly:
         return reinforcement
 
     def _build_handler(self, agreement: Agreement) -> CommandHandler:
-        lessons = None if self.mid is None else MidLessons(self.mid)
-        goals = None if self.navigator is None or lessons is None else GoalCommands(self.navigator, lessons)
+        commands = None if self.mid is None or self.navigator is None else MidCommands(self.mid, self.navigator)
         # A repertoire of its own: an action run by the teacher must not disturb the same action run by an RLA.
         repertoire = load_task_repertoire(self._task, self._settings)
         answered = None if self._options.checkpoint is None else self._options.checkpoint.answer_delays
@@ -240,8 +237,7 @@ class _Assembly:
                 critic=Critic(self._system, self.critic),
                 agreement=agreement,
                 self_teaching=self.self_teaching,
-                mid=lessons,
-                goals=goals,
+                mid=commands,
                 delay=TeacherDelay(round(self._task.learning.teacher_delay_s / self._period_s), answered),
                 answers_override_holds=self._task.learning.answers_override_holds,
                 learner=self.learner,

@@ -7,7 +7,7 @@ from kurt2rt.core.decision.decision import StandReason
 from kurt2rt.core.decision.goal import goal_text
 from kurt2rt.core.decision.standing import Standing, hindrance_text
 from kurt2rt.core.outcome import Code, Field, Outcome, ResultCode
-from kurt2rt.core.rla.event_error import InvalidEventError
+from kurt2rt.core.rla.events import InvalidEventError
 from kurt2rt.core.rla.rla import BASIC, rla_title
 
 

@@ -10,7 +10,7 @@ from kurt2rt.core.decision.decision import Level
 from kurt2rt.core.event_store import EventStore
 from kurt2rt.core.expectations.tracker import ExpectationTracker
 from kurt2rt.core.perception.perception import Perception
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.rla.statistics import StatisticsCounter
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.platform.ledger import TickTimer

@@ -15,7 +15,7 @@ from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.learner.learner import Learner, LearnerFactory
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.rla import Rla
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.rla.statistics import StatisticsCounter
 from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Command, Correct, Resume, Teach

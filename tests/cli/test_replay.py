@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.outcome import Outcome, ResultCode
-from kurt2rt.core.teaching.lesson_result import LessonResult
+from kurt2rt.core.teaching.knowledge_updater import LessonResult
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.runs.replay.reader import read_run

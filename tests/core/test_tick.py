@@ -18,12 +18,12 @@ from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.rla.statistics import StatisticsCounter
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import Command, Resume
-from kurt2rt.core.teaching.handler_parts import HandlerParts
 from kurt2rt.core.teaching.inbox import TeacherInbox
+from kurt2rt.core.teaching.knowledge_updater import HandlerParts
 from kurt2rt.core.tick import Tick
 from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord

@@ -5,7 +5,7 @@ import pytest
 from kurt2rt.core.outcome import RefusalCode, ResultCode
 from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.teaching.commands import Drive, Stop, TeachShown, Undo
-from kurt2rt.core.teaching.demonstration import Segment
+from kurt2rt.core.teaching.driven_lessons import Segment
 from tests.core.test_tick import Corridor
 
 FORWARD, BACK = (0.2, 0.2), (-0.1, -0.1)

@@ -11,7 +11,7 @@ from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.rla.statistics import StatisticsCounter
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.inbox import TeacherInbox

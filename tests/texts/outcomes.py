@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from kurt2rt.core.decision.decision import GoalStatus
 from kurt2rt.core.outcome import Code, Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.outcome_text import Surface, event_error_text, fields_of, text_of
-from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
+from kurt2rt.core.rla.events import EventFault, InvalidEventError
 from kurt2rt.core.rla.rla import MID
 
 SAMPLES: dict[str, Field] = {

@@ -13,7 +13,7 @@ from kurt2rt.core.mid.situation import MidSituation
 from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.rla.statistics import StatisticsCounter
 
 
 class TieBreaker(Protocol):

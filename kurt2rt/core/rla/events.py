@@ -1,8 +1,10 @@
 """Teaching events: they create, change, reward and delete RLAs, and the knowledge journal holds them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from config.errors import TextCode
+from kurt2rt.core.outcome import Outcome
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.credit import Credit, pack_credits
 from kurt2rt.core.rla.rla import Origin, Rla
@@ -140,3 +142,46 @@ TeachingEvent = Lesson | LessonUndone | LessonRedone | Appraised | SessionBegun 
 """Entry of the knowledge journal: all that teaching can change. The RLA system is the fold of these events.
 
 The tick makes and applies one, then submits it to `EventStore`. A command is acknowledged once its event is on disk."""
+
+
+class EventFault(TextCode):
+    """Code for why a teaching event does not fit the knowledge."""
+
+    NOT_UNDOABLE = ("not undoable", "lesson {lesson!r} cannot be undone")
+    NOT_REDOABLE = ("not redoable", "lesson {lesson!r} cannot be redone")
+    LESSON_EXISTS = ("lesson exists", "command {command_id!r} has taught a lesson already")
+    """Another lesson has its command id."""
+    RLA_EXISTS = ("rla exists", "RLA {rla_id} cannot be created: ids up to {last} are taken")
+    NO_RLA = ("no rla", "RLA {rla_id} does not exist (ids 1 to {last} were used; some are deleted)")
+    BAD_CONDITION = ("bad condition", "RLA {rla_id}: {error}")
+    NOT_FINITE = ("not finite", "the situation named {name!r} holds a value that is not finite")
+    """A named situation holds an infinite value or NaN."""
+    BAD_SITUATION = ("bad situation", "the situation named {name!r} has {got} values, level {level} matches {expected}")
+    """A named situation has another number of values than its level."""
+    BAD_ACTION = ("bad action", "the action {action!r} cannot be taught; withdraw the RLA's action instead")
+    BAD_REWARD = ("bad reward", "RLA {rla_id}: wrong reward (got {value}, allowed -1, 1)")
+    WITHDRAWN_ALREADY = ("withdrawn already", "{title} has no action; withdraw an action once")
+    NO_LEVEL = ("no level", "{title} is of the level {level!r}, but the file does not list its features")
+    """The knowledge file does not name the features of its level."""
+
+
+class InvalidEventError(ValueError):
+    """Teaching event that does not fit the knowledge it should change; `kurt2rt.core.outcome_text` words it."""
+
+    def __init__(
+        self, fault: EventFault, fields: Mapping[str, int | str] | None = None, refusal: Outcome | None = None
+    ) -> None:
+        """`refusal`: why a lesson cannot be undone or redone; None for other faults."""
+        super().__init__(fault, fields, refusal)
+        self.fault = fault
+        self.fields = dict(fields or {})
+        self.refusal = refusal
+
+    @classmethod
+    def of(cls, fault: EventFault, **fields: int | str) -> "InvalidEventError":
+        """Return the error of a fault; `fields` fill the gaps in the fault's text."""
+        return cls(fault, fields)
+
+    def __str__(self) -> str:
+        details = self.fields if self.refusal is None else {"refusal": self.refusal.code, **self.refusal.fields}
+        return ", ".join((self.fault, *(f"{key} {value}" for key, value in details.items())))

@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 
 from kurt2rt.core.rla.active_rlas import ActiveRlas
 from kurt2rt.core.rla.condition import Condition, Space
-from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
 from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     Appraised,
+    EventFault,
+    InvalidEventError,
     Lesson,
     LessonRedone,
     LessonUndone,

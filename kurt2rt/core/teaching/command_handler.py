@@ -14,11 +14,10 @@ from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, Resu
 from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
-from kurt2rt.core.rla.event_error import InvalidEventError
-from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.events import InvalidEventError, TeachingEvent
 from kurt2rt.core.rla.lesson_history import DERIVED
 from kurt2rt.core.rla.rla import AUTONOMOUS, BASIC, MID, Origin, Phase, Rla
-from kurt2rt.core.teaching.authority import ControlAuthority, name_refusal
+from kurt2rt.core.teaching.authority import ControlAuthority, StopRecord, name_refusal
 from kurt2rt.core.teaching.commands import (
     BeAt,
     BeginSession,
@@ -45,18 +44,13 @@ from kurt2rt.core.teaching.commands import (
     Undo,
     Watch,
 )
-from kurt2rt.core.teaching.control_commands import BehaviourSelection, ControlCommands, SessionClock
-from kurt2rt.core.teaching.demonstration import Demonstration
-from kurt2rt.core.teaching.goal_commands import GoalCommands
-from kurt2rt.core.teaching.handler_parts import HandlerParts
-from kurt2rt.core.teaching.hold_lessons import HoldLessons
-from kurt2rt.core.teaching.knowledge_updater import KnowledgeUpdater
-from kurt2rt.core.teaching.late_press import LatePresses, TeacherDelay
+from kurt2rt.core.teaching.control_commands import ControlCommands, SessionClock
+from kurt2rt.core.teaching.driven_lessons import Demonstration, HoldLessons
+from kurt2rt.core.teaching.knowledge_updater import HandlerParts, KnowledgeUpdater, LessonResult
+from kurt2rt.core.teaching.late_press import CHUNK_TICKS, LatePresses, RewindHistory, TeacherDelay
 from kurt2rt.core.teaching.lesson_builder import LessonBuilder
-from kurt2rt.core.teaching.lesson_result import LessonResult
 from kurt2rt.core.teaching.message_fields import SLOWEST_PERCENT
-from kurt2rt.core.teaching.rewind_history import CHUNK_TICKS, RewindHistory
-from kurt2rt.core.teaching.stop_record import StopRecord
+from kurt2rt.core.teaching.mid_commands import BehaviourSelection, MidCommands
 
 _Answer = tuple[CommandResult, tuple[TeachingEvent, ...]]
 _TAUGHT_PHASES = (Phase.SUPERVISED, Phase.CORRECTIONS)
@@ -103,7 +97,6 @@ class CommandHandler:
         self.reinforcement = reinforcement = parts.reinforcement
         self.mid = parts.mid
         self._learner = parts.learner
-        self._goals = parts.goals
         self.recent = DecisionHistory(level.system.dimensions) if reinforcement is None else reinforcement.recent
         self._rewind = RewindHistory(self.recent)
         self._lessons = LessonBuilder(level, self.recent, self._rewind, insert_radius_fraction, parts)
@@ -304,9 +297,9 @@ class CommandHandler:
             case Pursue():
                 return LessonResult(self._selection.select(command, tick))
             case Seek() | StopSeeking() | BeAt():
-                return LessonResult(self._require_goals().carry_out(command, tick))
+                return LessonResult(self._require_mid().carry_out(command, tick))
             case NameSituation():
-                return LessonResult(*self._require_goals().name_situation(command, self._origin(command, tick)))
+                return LessonResult(*self._require_mid().name_situation(command, self._origin(command, tick)))
             case TeachShown():
                 origin = self._origin(command, tick)
                 return LessonResult(self.demonstration.confirm(command.press_id, command.segments, origin))
@@ -329,10 +322,10 @@ class CommandHandler:
         self.phase = command.phase
         return Outcome.of(ResultCode.PHASE_SET, phase=command.phase.value, name=command.phase.name.lower())
 
-    def _require_goals(self) -> GoalCommands:
-        if self._goals is None:
+    def _require_mid(self) -> MidCommands:
+        if self.mid is None:
             raise CommandRefusedError(RefusalCode.NO_MID_LEVEL)
-        return self._goals
+        return self.mid
 
     def _session(self, command: BeginSession | EndSession, tick: int) -> tuple[Outcome, TeachingEvent]:
         name = self.clock.session

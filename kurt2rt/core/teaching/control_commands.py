@@ -1,18 +1,16 @@
 """Control: presses and other streams, who drives, running an action, the behaviour, and the session."""
 
 from behaviors.repertoire import Repertoire
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.rla.events import SessionBegun, SessionEnded, TeachingEvent
 from kurt2rt.core.rla.rla import Origin, Phase
-from kurt2rt.core.teaching.authority import ControlAuthority, name_refusal
+from kurt2rt.core.teaching.authority import ControlAuthority, StopRecord, name_refusal
 from kurt2rt.core.teaching.commands import (
     BeginSession,
     EndSession,
     HandOver,
     HoldAction,
-    Pursue,
     Resume,
     RunBehaviour,
     Stop,
@@ -20,11 +18,9 @@ from kurt2rt.core.teaching.commands import (
     Take,
     Watch,
 )
-from kurt2rt.core.teaching.hold_lessons import HoldLessons
+from kurt2rt.core.teaching.driven_lessons import HoldLessons
+from kurt2rt.core.teaching.knowledge_updater import require_action
 from kurt2rt.core.teaching.late_press import TeacherDelay
-from kurt2rt.core.teaching.lesson_result import require_action
-from kurt2rt.core.teaching.mid_lessons import MidLessons
-from kurt2rt.core.teaching.stop_record import StopRecord
 
 ControlCommand = Stop | Take | HandOver | Resume | RunBehaviour
 
@@ -151,37 +147,6 @@ class ControlCommands:
             self._holds.begin(command, tick, self._authority.speed)
             self._delay.on_answer(command.teacher, command.seen_tick, self._authority.speed)
         self._authority.hold(command, tick)
-
-
-class BehaviourSelection:
-    """Selection in the order in which teachers saw the robot; a late command on an older state is refused."""
-
-    def __init__(self, active_behaviour: ActiveBehaviour, mid: MidLessons | None) -> None:
-        """`mid`: lessons of the mid level; None: the teacher alone selects."""
-        self._active_behaviour = active_behaviour
-        self._mid = mid
-        self._seen_tick = -1
-        """Tick that the teacher had seen at the last selection."""
-
-    def select(self, command: Pursue, tick: int) -> Outcome:
-        """Select the behaviour of a command from `tick` on and return the outcome.
-
-        Raises CommandRefusedError for an unknown behaviour, and if the teacher saw a state older than the last
-        selection or the last junction.
-        """
-        wanted, mid = self._active_behaviour, self._mid
-        seen_tick = tick if command.seen_tick is None else command.seen_tick
-        if seen_tick < self._seen_tick:
-            raise CommandRefusedError(RefusalCode.BEHAVIOUR_SINCE, behaviour=wanted.behaviour)
-        if mid is not None and seen_tick < mid.passed_at_tick:
-            raise CommandRefusedError(RefusalCode.JUNCTION_PASSED)
-        if mid is None:
-            wanted.select(command.behaviour)
-        else:
-            mid.mid.override(command.behaviour)
-        self._seen_tick = seen_tick
-        code = ResultCode.BEHAVIOUR_WANTED if mid is None else ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION
-        return Outcome.of(code, behaviour=command.behaviour)
 
 
 class SessionClock:

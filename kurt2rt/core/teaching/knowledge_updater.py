@@ -1,15 +1,84 @@
-"""Updates of the knowledge after each decision: by lessons, rewards and the critic."""
+"""Knowledge of a robot that is taught: the parts that depend on it, results of lessons, and its updates."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
 
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.critic.critic import CriticState, Opinion
+from kurt2rt.core.critic.agreement import Agreement
+from kurt2rt.core.critic.critic import Critic, CriticState, Opinion
 from kurt2rt.core.decision.decision import Decision
+from kurt2rt.core.learner.learner_level import LearnerLevel
+from kurt2rt.core.outcome import CommandRefusedError, Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.outcome_text import event_error_text
-from kurt2rt.core.rla.event_error import InvalidEventError
-from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.rla import Phase
-from kurt2rt.core.teaching.handler_parts import HandlerParts
+from kurt2rt.core.reinforcement.reinforcement import Reinforcement
+from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
+from kurt2rt.core.rla.events import InvalidEventError, TeachingEvent
+from kurt2rt.core.rla.rla import BASIC, Phase, Rla
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.teaching.late_press import TeacherDelay
+from kurt2rt.core.teaching.mid_commands import MidCommands
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HandlerParts:
+    """Optional parts of a command handler, each None if the task lacks it."""
+
+    reinforcement: Reinforcement | None = None
+    """Effect of rewards; None: they have none."""
+    critic: Critic | None = None
+    agreement: Agreement | None = None
+    self_teaching: SelfTeaching | None = None
+    """Teacher of phase 5; None: the robot learns nothing then."""
+    mid: MidCommands | None = None
+    """Commands of the mid level; None: the teacher alone selects the behaviour."""
+    delay: TeacherDelay | None = None
+    """Delay of the teachers; None: it begins with the default."""
+    answers_override_holds: bool = False
+    """Keep what an answer or a press taught where a hold would replace it."""
+    learner: LearnerLevel | None = None
+    """Level of a learner that decides instead of the RLAs and gets each lesson; None: RLAs decide."""
+    lesson_speed: float = 1.0
+    """Fraction of their speed at which actions drive in lessons, until a teacher sets another one."""
+
+
+class LessonResult(NamedTuple):
+    """Outcome of a command for its teacher, and the events by which it changes the knowledge."""
+
+    outcome: Outcome
+    event: TeachingEvent | None = None
+    """Change of the knowledge, by the command's own id; None if it changes nothing."""
+    before: tuple[TeachingEvent, ...] = ()
+    """Changes by derived ids, applied before `event`."""
+
+
+def rla_outcome(code: ResultCode | RefusalCode, rla: Rla, **fields: Field) -> Outcome:
+    """Return an outcome with an RLA's id, and with its behaviour and level if they are not the default.
+
+    `fields`: further fields of the code's text.
+    """
+    named: dict[str, Field] = {"rla": rla.rla_id}
+    if rla.behaviour:
+        named["behaviour"] = rla.behaviour
+    if rla.level != BASIC:
+        named["level"] = rla.level
+    return Outcome(code, {**named, **fields})
+
+
+def require_action(action: str, repertoire: Iterable[str]) -> None:
+    """Raise CommandRefusedError, which lists the actions, if the repertoire lacks `action`."""
+    names = tuple(repertoire)
+    if action not in names:
+        raise CommandRefusedError(RefusalCode.NO_ACTION, action=action, known=names)
+
+
+def require_rla(rla_id: int, system: RlaSystem) -> Rla:
+    """Return the RLA of an id. Raises CommandRefusedError if `system` has none."""
+    rla = system.get(rla_id)
+    if rla is None:
+        raise CommandRefusedError(RefusalCode.NO_RLA, rla=rla_id)
+    return rla
+
 
 _REWARDED_PHASES = (Phase.REINFORCEMENT, Phase.CRITIC)
 

@@ -1,6 +1,7 @@
 """Lesson builder: from a teacher's command to the event that changes the knowledge."""
 
 from collections import Counter
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,21 +16,34 @@ from kurt2rt.core.rla.events import ActionReplaced, RlaCreated, RlaDeleted, Teac
 from kurt2rt.core.rla.lesson_history import hold_of
 from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
 from kurt2rt.core.teaching.commands import Appraise, Correct, DeleteRla, ReplaceAction, Reward, Teach, Undo
-from kurt2rt.core.teaching.feedback_lessons import FeedbackLessons
-from kurt2rt.core.teaching.handler_parts import HandlerParts
-from kurt2rt.core.teaching.lesson_result import (
-    LessonContext,
+from kurt2rt.core.teaching.feedback_lessons import FeedbackLessons, UndoLessons
+from kurt2rt.core.teaching.knowledge_updater import (
+    HandlerParts,
     LessonResult,
     require_action,
-    require_behaviour,
     require_rla,
     rla_outcome,
 )
-from kurt2rt.core.teaching.rewind_history import RewindHistory
-from kurt2rt.core.teaching.undo_lessons import UndoLessons
+from kurt2rt.core.teaching.late_press import RewindHistory
 
 LessonCommand = Teach | Correct | ReplaceAction | DeleteRla | Reward | Appraise | Undo
 """Command that changes the knowledge."""
+
+
+class LessonContext(NamedTuple):
+    """Situation that a lesson is about, with its level and behaviour, and the RLA that answered there."""
+
+    vector: NDArray[np.float64]
+    """Situation of the level, shape (d,)."""
+    behaviour: str
+    """Behaviour that the lesson belongs to; empty if the level has a single one."""
+    level: str
+    drove: int | None
+    """RLA that answered there; None if none did."""
+    insert_radius_fraction: float
+    """A correction farther than this share of R from the nearest condition inserts a new RLA, else it replaces."""
+    touched: bool = False
+    """True if the robot asked at a bumper: an answer corrects the RLA that pushed on."""
 
 
 class LessonBuilder:
@@ -149,10 +163,12 @@ class LessonBuilder:
         if command.level == MID:
             if self._mid is None:
                 raise CommandRefusedError(RefusalCode.NO_MID_LEVEL)
-            require_behaviour(command.action, self._level.active_behaviour.behaviours)
-            context = self._mid.context_of(command.decision_tick)
+            self._require_action_of(MID, command.action)
+            vector, commanded = self._mid.meant(command.decision_tick)
+            share = self._mid.mid.settings.learning.insert_radius_fraction
+            context = LessonContext(vector, "", MID, commanded, share)
         elif command.level == BASIC:
-            require_action(command.action, self._level.repertoire)
+            self._require_action_of(BASIC, command.action)
             context = self._basic_context(command.decision_tick, situation)
         else:
             raise CommandRefusedError(RefusalCode.NO_LEVEL, level=command.level, known=(BASIC, MID))
@@ -268,8 +284,11 @@ class LessonBuilder:
         return next((each for each in self._system.competitors(rla) if each is not rla and each.action == action), None)
 
     def _require_action_of(self, level_name: str, action: str) -> None:
+        """Raise CommandRefusedError, which lists the actions of a level, if `action` is none of them."""
         if level_name == MID:
-            require_behaviour(action, self._level.active_behaviour.behaviours)
+            names = self._level.active_behaviour.behaviours
+            if action not in names:
+                raise CommandRefusedError(RefusalCode.NO_BEHAVIOUR, behaviour=action, known=names)
         else:
             require_action(action, self._level.repertoire if level_name == BASIC else self._appraisals)
 

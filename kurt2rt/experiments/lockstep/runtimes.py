@@ -8,8 +8,7 @@ from kurt2rt.core.event_store import EventStore
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.rla.statistics import Statistics, StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings, as_its_teacher_wants
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from behaviors.metrics.errands import ErrandsSettings
 from behaviors.metrics.streets import ALONG
 from behaviors.metrics.town import Street
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.rla.statistics import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teacher_settings import SUPERHUMAN
 from kurt2rt.experiments.lockstep.curriculum import Report

@@ -5,8 +5,7 @@ from collections.abc import Container, Iterable
 
 from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.rla.condition import Space
-from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
-from kurt2rt.core.rla.events import RlaCreated, SituationNamed
+from kurt2rt.core.rla.events import EventFault, InvalidEventError, RlaCreated, SituationNamed
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics

@@ -10,8 +10,7 @@ from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import CRITIC, MID, PROGRAMS
-from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.rla.statistics import Statistics, StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
 from kurt2rt.knowledge.journal.entry import StoredEntry

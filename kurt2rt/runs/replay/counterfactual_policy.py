@@ -19,8 +19,7 @@ from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.rla.active_rlas import Match
-from kurt2rt.core.rla.event_error import InvalidEventError
-from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.events import InvalidEventError, TeachingEvent
 from kurt2rt.core.rla.rla import BASIC, MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics

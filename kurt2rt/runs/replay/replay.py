@@ -11,9 +11,8 @@ from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.outcome import CommandRefusedError
 from kurt2rt.core.outcome_text import event_error_text, text_of
-from kurt2rt.core.rla.event_error import InvalidEventError
-from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.rla.events import InvalidEventError, TeachingEvent
+from kurt2rt.core.rla.statistics import StatisticsCounter
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runs.recording.entries import TickEntry

@@ -25,7 +25,7 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import Command, CommandResult, Reward, Stream
-from kurt2rt.core.teaching.handler_parts import HandlerParts
+from kurt2rt.core.teaching.knowledge_updater import HandlerParts
 from tests.core.critic.helpers import FREE, SETTINGS, appraisal, origin
 from tests.core.helpers import MINIMUM_TICKS, RADIUS, Counted, sensed, situation
 

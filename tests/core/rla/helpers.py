@@ -3,10 +3,10 @@
 import pytest
 
 from kurt2rt.core.rla.condition import Condition
-from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
+    InvalidEventError,
     LessonUndone,
     RlaCreated,
     RlaDeleted,

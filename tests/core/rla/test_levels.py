@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.core.rla.condition import Space
-from kurt2rt.core.rla.event_error import EventFault
-from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.events import EventFault, TeachingEvent
 from kurt2rt.core.rla.rla import ASK, CRITIC
 from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.rla.helpers import created, deleted, refused_by, replaced, undone, withdrawn

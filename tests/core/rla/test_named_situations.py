@@ -3,7 +3,7 @@
 import math
 
 from kurt2rt.core.rla.condition import Space
-from kurt2rt.core.rla.event_error import EventFault
+from kurt2rt.core.rla.events import EventFault
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.rla.helpers import named, refused_by

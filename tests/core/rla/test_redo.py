@@ -5,8 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.core.outcome import Outcome, RefusalCode
-from kurt2rt.core.rla.event_error import InvalidEventError
-from kurt2rt.core.rla.events import Appraised, LessonRedone, TeachingEvent
+from kurt2rt.core.rla.events import Appraised, InvalidEventError, LessonRedone, TeachingEvent
 from kurt2rt.core.rla.rla import ASK
 from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.rla.helpers import created, deleted, named, origin, refused_by, replaced, rewarded, undone, withdrawn

@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
-from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.events import EventFault, InvalidEventError, TeachingEvent
 from kurt2rt.core.rla.matching import exact_distances
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.rla.rla_system import RlaSystem

@@ -7,8 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.core.outcome import Outcome, RefusalCode
-from kurt2rt.core.rla.event_error import InvalidEventError
-from kurt2rt.core.rla.events import Lesson, TeachingEvent
+from kurt2rt.core.rla.events import InvalidEventError, Lesson, TeachingEvent
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import ASK
 from kurt2rt.core.rla.rla_system import RlaSystem

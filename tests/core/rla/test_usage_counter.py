@@ -1,6 +1,6 @@
 """Counts of uses and transitions."""
 
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.rla.statistics import StatisticsCounter
 
 
 def drive(statistics: StatisticsCounter, ticks: list[int | None]) -> None:

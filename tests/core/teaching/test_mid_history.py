@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from kurt2rt.core.teaching.mid_lessons import MidHistory, MidSnapshot
+from kurt2rt.core.teaching.mid_commands import MidHistory, MidSnapshot
 
 
-def remembered(*spells: tuple[int, int, int | None], capacity: int = 64) -> MidHistory:
+def remembered(*spells: tuple[int, int, int | None]) -> MidHistory:
     """Return a history with one situation of each (first tick, last tick, RLA): the number of its first tick."""
-    recent = MidHistory(capacity)
+    recent = MidHistory()
     for first, last, rla_id in spells:
         vector = np.array([float(first)])
         for tick in range(first, last + 1):

@@ -9,7 +9,7 @@ from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
-from kurt2rt.core.teaching.rewind_history import RewindHistory
+from kurt2rt.core.teaching.late_press import RewindHistory
 from tests.core.rla.helpers import created
 from tests.core.teaching.test_command_handler import Lesson
 from tests.teacher.helpers import correct

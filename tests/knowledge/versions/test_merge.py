@@ -12,8 +12,14 @@ from hypothesis import strategies as st
 
 from kurt2rt.core.outcome import RefusalCode
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.event_error import InvalidEventError
-from kurt2rt.core.rla.events import LessonRedone, RlaCreated, RlaRewarded, SituationNamed, TeachingEvent
+from kurt2rt.core.rla.events import (
+    InvalidEventError,
+    LessonRedone,
+    RlaCreated,
+    RlaRewarded,
+    SituationNamed,
+    TeachingEvent,
+)
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.rla.rla_system import RlaSystem
