@@ -25,7 +25,7 @@ def test_a_moment_is_explained_and_drawn(kurt2rt: CommandLine, tmp_path: Path) -
     for words in (
         r"^walls.mcap: .* 2026-03-20 09:46:40 UTC, 12.00 s \(tick 1201\)",
         r"RLA 3, .* \d+ of R 900 \(\d+ %\).",
-        r"RLA 3 taught: \w+; 2026-03-20 09:46:5\d UTC \(tick 1\d+\)",
+        r"RLA 3 taught: \w+; tick 1\d+ of its run",
         rf" {picture}$",
     ):
         assert re.search(words, said.out, re.MULTILINE), words

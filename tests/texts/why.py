@@ -150,8 +150,6 @@ def sentences() -> Iterator[tuple[str, str]]:
     yield "taught, unknown", format_teaching(replace(NEAR, acts=()))
     yield "stamp, unknown", format_stamp(replace(corrected, stamp=""))
     yield "used", format_usage(NEAR)
-    yield "used, action replaced", format_usage(replace(NEAR, uses_since=1))
-    yield "used, unknown since", format_usage(replace(NEAR, uses_since=None))
     yield "used, rewarded", format_usage(replace(NEAR, rewards=2, punishments=1, value=0.25))
 
 

@@ -42,15 +42,14 @@ def collect_facts(
     stamp_of: StampOf,
     *,
     most: int | None = None,
-    uses_before: Mapping[int, int] | None = None,
 ) -> DecisionFacts:
     """Return the facts behind the decision of `record`, the newest tick of `runtime`.
 
     `most`: number of RLAs reported per level in addition to the nearest; None: all. A small number takes about 1 ms for
-    any number of RLAs. `uses_before`: by RLA id, its uses before it got its present action.
+    any number of RLAs.
     """
     decision, school = record.decision, runtime.handler
-    reader = _Reader(runtime, stamp_of, most, uses_before or {})
+    reader = _Reader(runtime, stamp_of, most)
     mid = decision.mid
     return DecisionFacts(
         tick=record.tick,
@@ -160,12 +159,11 @@ class _LevelSituation(NamedTuple):
 class _Reader:
     """Lookup of levels and RLAs in one runtime."""
 
-    def __init__(self, runtime: Runtime, stamp_of: StampOf, most: int | None, uses_before: Mapping[int, int]) -> None:
+    def __init__(self, runtime: Runtime, stamp_of: StampOf, most: int | None) -> None:
         self._runtime = runtime
         self._system: RlaSystem = runtime.level.system
         self._stamp_of = stamp_of
         self._most = most
-        self._uses_before = uses_before
 
     def basic(self, record: TickRecord, decision: Decision) -> LevelFacts:
         vector, system = record.situation.vector, self._system
@@ -267,12 +265,6 @@ class _Reader:
     def _rla_facts(self, rla: Rla, radius: float, distance: float) -> RlaFacts:
         counted, appraisal = self._runtime.statistics, self._system.appraisal(rla.rla_id)
         rewarded = appraisal.rewards or appraisal.punishments
-        lessons = self._system.history.about(rla.rla_id)
-        acts = tuple(self._lesson_fact(each) for each in lessons)
-        uses = counted.uses.get(rla.rla_id, 0)
-        before = self._uses_before.get(rla.rla_id)
-        if before is None and all(isinstance(each.event, RlaRewarded) for each in lessons[1:]):
-            before = 0  # it has the action that it was taught with
         return RlaFacts(
             rla_id=rla.rla_id,
             title=rla.title,
@@ -280,9 +272,8 @@ class _Reader:
             condition=tuple(rla.condition),
             distance=distance,
             radius=radius,
-            acts=acts,
-            uses=uses,
-            uses_since=None if before is None else max(0, uses - before),
+            acts=tuple(self._lesson_fact(each) for each in self._system.history.about(rla.rla_id)),
+            uses=counted.uses.get(rla.rla_id, 0),
             rewards=appraisal.rewards,
             punishments=appraisal.punishments,
             value=float(self._runtime.reinforcement.value(rla.rla_id)) if rewarded else None,

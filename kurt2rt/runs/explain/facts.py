@@ -8,6 +8,7 @@ from hal.robot import WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.message_fields import Int, Line, Number, OneOf, OrNotFinite, Share, Time, Title, Truth, UpTo
+from kurt2rt.core.rla.rla import MID
 
 MOST_OTHERS = 12
 """RLAs of a level that are sent in addition to the nearest: the next nearest."""
@@ -51,8 +52,6 @@ class RlaFacts:
     """Oldest first."""
     uses: Number
     """Number of times it started to drive since it was first taught."""
-    uses_since: Number | None
-    """Number of times it started to drive with its present action; None if unknown."""
     rewards: Number
     punishments: Number
     value: Time | None
@@ -210,3 +209,10 @@ class DecisionFacts:
     """None if the robot has no score of doubt, and at a standstill for another reason."""
     lesson_speed: Share = 1.0
     """Fraction of the decided speeds that was asked of the guard; below 1 in a slow lesson."""
+
+    @property
+    def deciding(self) -> tuple[LevelFacts, RlaFacts | None]:
+        """Level that decided, and its RLA that was followed or is nearest."""
+        if self.asks_at == MID and self.mid is not None:
+            return self.mid, self.mid.nearest
+        return self.basic, self.basic.driver or self.basic.nearest

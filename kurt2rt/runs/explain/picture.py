@@ -6,33 +6,30 @@ from textwrap import fill
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.gridspec import SubplotSpec
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.decision.decision import ASKING, DecisionCause
 from kurt2rt.core.perception.definition import AVERAGED
-from kurt2rt.core.perception.sensor_words import SensorWords, words_for
-from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.runs.explain.attribution import distance_attribution
-from kurt2rt.runs.explain.bars import draw_contrast, draw_differences, draw_nearness
+from kurt2rt.runs.explain.bars import draw_differences, draw_nearness
 from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS, TEACHER, colours_of, ink_on
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
 from kurt2rt.runs.explain.facts import DecisionFacts, RlaFacts
-from kurt2rt.runs.explain.mid_picture import draw_mid
 from kurt2rt.runs.explain.reasons import format_reasons, headline
 from kurt2rt.runs.explain.save_figure import save_figure
-from kurt2rt.runs.explain.sensor_view import LEGEND, SensorMark, SensorView, draw_sensor_view
+from kurt2rt.runs.explain.sensor_view import LEGEND, SensorView, draw_sensor_view
 from kurt2rt.runs.explain.sentences import (
     format_counterfactuals,
     format_guard,
     format_mid_level,
+    format_rla,
     format_teaching,
     format_usage,
 )
 
-_FEATURES, _FEATURES_BELOW_MID = 7, 4
+_FEATURES = 12
 _POINTED_AT = 4
-_MARKS = 1
 _CAPTION = 76
 """Characters per line below a situation."""
 _WORTH_POINTING = 0.03
@@ -48,56 +45,19 @@ def draw_why(
     level = facts.basic
     rla = level.driver or level.nearest
     known = (*([] if rla is None else [rla]), *level.others)
-    said = [rla.action for rla in known] + ([facts.action] if facts.action else [])
-    if facts.mid is not None:
-        said += [each.action for each in (facts.mid.nearest, *facts.mid.others) if each is not None]
-    colours = colours_of(said)
+    colours = colours_of([each.action for each in known] + ([facts.action] if facts.action else []))
     figure = Figure(figsize=(14.5, 9.2), facecolor="white")
     top = _heading(figure, facts, found, title, colours)
-    grid = figure.add_gridspec(
-        2,
-        3,
-        left=0.015,
-        right=0.98,
-        top=top,
-        bottom=0.085,
-        width_ratios=(1.0, 1.0, 0.95),
-        height_ratios=(1.0, 0.14),
-        wspace=0.05,
-        hspace=0.32,  # room for four lines about who taught it
+    # Between the rows there is room for four lines about who taught it.
+    rows = {"height_ratios": (1.0, 0.14), "hspace": 0.32}
+    grid = figure.add_gridspec(2, 2, left=0.015, right=0.63, top=top, bottom=0.085, wspace=0.05, **rows)
+    _situations(figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1]), facts, robot, rla, colours)
+    draw_nearness(figure.add_subplot(grid[1, :]), level, rla, colours)
+    draw_differences(
+        figure.add_axes((0.83, 0.085, 0.12, top - 0.12)), *facts.deciding, _FEATURES, words_for(robot.infrared)
     )
-    _situations(figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1]), facts, found, robot, rla, colours)
-    draw_nearness(figure.add_subplot(grid[1, 0:2]), level, rla, colours)
-    _right_column(figure, grid[:, 2], facts, rla, colours, words_for(robot.infrared))
     figure.text(0.02, 0.014, LEGEND, fontsize=8.5, color=PALE_INK)
     save_figure(figure, path)
-
-
-def _right_column(
-    figure: Figure,
-    spec: SubplotSpec,
-    facts: DecisionFacts,
-    rla: RlaFacts | None,
-    colours: Mapping[str, str],
-    words: SensorWords,
-) -> None:
-    """Draw the attribution of the deciding level, with the mid level's map if there is one."""
-    level, mid = facts.basic, facts.mid
-    if mid is not None and mid.lost and mid.nearest is None:
-        mid = None  # neither where it is nor any place is there to be drawn; the text says so
-    if mid is not None and facts.asks_at == MID and mid.nearest is not None and not mid.lost:
-        right = spec.subgridspec(2, 1, hspace=0.3, height_ratios=(2.0, 1.0))
-        draw_mid(figure.add_subplot(right[0]), mid, colours)
-        draw_differences(figure.add_subplot(right[1]), mid, mid.nearest, _FEATURES_BELOW_MID, words)
-        return
-    rows = _FEATURES if mid is None else _FEATURES_BELOW_MID
-    if mid is None:
-        right = spec.subgridspec(2, 1, hspace=0.42)
-    else:
-        right = spec.subgridspec(3, 1, hspace=0.42, height_ratios=(1.5, 1.0, 1.0))
-        draw_mid(figure.add_subplot(right[0]), mid, colours)
-    draw_differences(figure.add_subplot(right[-2]), level, rla, rows, words)
-    draw_contrast(figure.add_subplot(right[-1]), level, rla, colours, rows, words)
 
 
 def _heading(
@@ -142,7 +102,6 @@ def _situations(
     here: Axes,
     there: Axes,
     facts: DecisionFacts,
-    found: tuple[SensorCounterfactual, ...],
     robot: RobotSettings,
     rla: RlaFacts | None,
     colours: Mapping[str, str],
@@ -155,8 +114,7 @@ def _situations(
     decided, granted = facts.decided, facts.granted
     motion = granted if facts.latched else decided
     counts, averages = _halves(level.names, level.vector, sensors)
-    marks = [_mark(each, colours) for each in found[:_MARKS]]
-    view = SensorView(counts, averages, pointed_at, marks, motion, _colour_of(facts, colours))
+    view = SensorView(counts, averages, pointed_at, motion, _colour_of(facts, colours))
     draw_sensor_view(here, robot, view)
     here.set_title(f"Now: tick {facts.tick}", fontsize=13, fontweight="bold", color=INK)
     if rla is None:
@@ -165,20 +123,13 @@ def _situations(
         return
     counts, averages = _halves(level.names, rla.condition, sensors)
     draw_sensor_view(there, robot, SensorView(counts, averages, pointed_at))
-    says = "asks again" if rla.asks else rla.action
-    there.set_title(f"As taught: {rla.title}, {says}", fontsize=13, fontweight="bold", color=INK)
+    there.set_title(f"As taught: {format_rla(rla)}", fontsize=13, fontweight="bold", color=INK)
     below = f"{fill(format_teaching(rla), _CAPTION)}\n{fill(format_usage(rla), _CAPTION)}"
     there.text(0.5, -0.015, below, transform=there.transAxes, ha="center", va="top", fontsize=8.5, color=INK)
     moving = f"wheels: {granted.left_m_s:+.2f} / {granted.right_m_s:+.2f} m/s"
     if facts.reasons and not facts.latched:
         moving += f", on the way to {decided.left_m_s:+.2f} / {decided.right_m_s:+.2f}"
     here.text(0.5, -0.015, moving, transform=here.transAxes, ha="center", va="top", fontsize=9, color=INK)
-
-
-def _mark(tip: SensorCounterfactual, colours: Mapping[str, str]) -> SensorMark:
-    if tip.rla is None:
-        return SensorMark(tip.sensor, tip.needed_m, "asks", ASKS)
-    return SensorMark(tip.sensor, tip.needed_m, tip.rla.action, colours[tip.rla.action])
 
 
 def _halves(

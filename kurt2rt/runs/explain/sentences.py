@@ -72,14 +72,8 @@ def standing_lessons(rla: RlaFacts) -> tuple[LessonFact, ...]:
 
 def format_usage(rla: RlaFacts) -> str:
     """Return the number of uses and the rewards."""
-    count = rla.uses if rla.uses_since is None else rla.uses_since
-    text = f"Used {format_count(count)}" if count else "Never used"
-    if rla.uses_since is None:
-        text += " since it was first taught"
-    elif rla.uses_since == rla.uses:
-        text += " since"
-    else:
-        text += f" since, {format_count(rla.uses)} with the actions it had before"
+    text = f"Used {format_count(rla.uses)}" if rla.uses else "Never used"
+    text += " since it was first taught"
     if rla.rewards or rla.punishments:
         text += f"; rewarded {format_count(rla.rewards)}, punished {format_count(rla.punishments)}"
         if rla.value is not None:

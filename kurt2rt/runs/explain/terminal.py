@@ -6,7 +6,6 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
-from kurt2rt.core.rla.rla import MID
 from kurt2rt.knowledge.show.table_cells import printable
 from kurt2rt.platform.text_table import TextTable
 from kurt2rt.runs.explain.attribution import contrast_attribution, distance_attribution
@@ -41,10 +40,7 @@ def render_why(
     parts += [printable(line) for line in format_reasons(facts)]
     if format_guard(facts):
         parts.append(printable(format_guard(facts)))
-    if facts.asks_at == MID and facts.mid is not None and facts.mid.nearest is not None:
-        parts += _of_level(facts.mid, None, words)
-    else:
-        parts += _of_level(facts.basic, facts.basic.driver, words)
+    parts += _of_level(*facts.deciding, words)
     changes = format_counterfactuals(found)
     if changes:
         parts.append(Text("\nWhat would have changed it, one reading alone:", style="bold"))
@@ -58,9 +54,8 @@ def render_why(
     return Group(*parts)
 
 
-def _of_level(level: LevelFacts, driver: RlaFacts | None, words: SensorWords) -> list[RenderableType]:
+def _of_level(level: LevelFacts, rla: RlaFacts | None, words: SensorWords) -> list[RenderableType]:
     """Render the RLA that decided, its rivals and the features."""
-    rla = driver or level.nearest
     if rla is None:
         return []
     parts: list[RenderableType] = [printable(line) for line in format_runner_up(level)]

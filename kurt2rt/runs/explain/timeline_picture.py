@@ -14,17 +14,21 @@ from matplotlib.patches import Patch
 
 from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS, TEACHER, colours_of
 from kurt2rt.runs.explain.save_figure import ShownFigure, save_figure
-from kurt2rt.runs.explain.timeline import Kind, Note, Sample, Stretch, Timeline, format_summary, kind_intervals
+from kurt2rt.runs.explain.timeline import Kind, Sample, Stretch, Timeline, format_summary, kind_intervals
 
 _KNOWN, _LIMIT = "#e3f1e6", "#3f9b5c"
 _CURVE = "#3b4754"
 _LEFT, _RIGHT, _HELD_BACK = "#2b7bba", "#c85a0a", "#efe3f5"
 _HIGHEST_SHARE = 1.6
 _MOST_NUMBERED = 24
-_MOST_STRETCHES = 400
-"""Most stretches that are drawn one by one."""
-_INTERVALS = 200
-"""Intervals into which a longer run is divided."""
+_OF_KIND = {
+    Kind.LED: (TEACHER, "led by a teacher"),
+    Kind.ASKS: (ASKS, "stands and asks"),
+    Kind.STANDS: (STANDS, "stands"),
+}
+"""Colours and labels of all kinds but driving by RLAs, which has those of its actions."""
+_OF_NOTE = {"lesson": ("v", INK, 1.22), "alarm": ("X", ASKS, 1.5)}
+"""Marker, colour and height of the notes that are drawn, by kind."""
 
 
 def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
@@ -68,16 +72,9 @@ def timeline_figure(timeline: Timeline, title: str) -> Figure:
     return figure
 
 
-def colour_of(stretch: Stretch, colours: Mapping[str, str]) -> str:
+def _colour_of(stretch: Stretch, colours: Mapping[str, str]) -> str:
     """Return the colour of the stretch's kind, or of its action."""
-    match stretch.kind:
-        case Kind.DRIVES:
-            return colours[stretch.what]
-        case Kind.LED:
-            return TEACHER
-        case Kind.ASKS:
-            return ASKS
-    return STANDS
+    return colours[stretch.what] if stretch.kind is Kind.DRIVES else _OF_KIND[stretch.kind][0]
 
 
 def _path(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
@@ -97,10 +94,8 @@ def _path(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
             if stretch is timeline.stretches[-1]:
                 break
         lines.append([(one.x_m, one.y_m), (other.x_m, other.y_m)])
-        shades.append(colour_of(stretch, colours))
-    wide = 3.4 if len(timeline.stretches) <= _MOST_STRETCHES else 1.2
-    axes.add_collection(LineCollection(lines, colors="#ffffff", linewidths=2 * wide, capstyle="round", zorder=2))
-    axes.add_collection(LineCollection(lines, colors=shades, linewidths=wide, capstyle="round", zorder=3))
+        shades.append(_colour_of(stretch, colours))
+    axes.add_collection(LineCollection(lines, colors=shades, linewidths=2.4, capstyle="round", zorder=3))
     first, last = samples[0], samples[-1]
     axes.plot(first.x_m, first.y_m, "o", markersize=9, color="white", markeredgecolor=INK, zorder=5)
     axes.plot(last.x_m, last.y_m, "s", markersize=8, color=INK, zorder=5)
@@ -141,61 +136,19 @@ def _at(samples: Sequence[Sample], at_s: float) -> Sample:
 
 def _stretch_lane(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
     """Draw the activities over time, with lessons and alarms above."""
-    if len(timeline.stretches) > _MOST_STRETCHES:
-        _shares_over_time(axes, timeline, colours)
-    else:
-        _one_by_one(axes, timeline, colours)
+    spans = [(stretch.from_s, stretch.lasts_s) for stretch in timeline.stretches]
+    shades = [_colour_of(stretch, colours) for stretch in timeline.stretches]
+    axes.broken_barh(spans, (0.0, 1.0), facecolors=shades, linewidth=0)
     asked = kind_intervals(timeline, Kind.ASKS)
     if len(asked) <= _MOST_NUMBERED:
         for number, (from_s, to_s) in enumerate(asked, start=1):
             axes.text((from_s + to_s) / 2, -0.08, str(number), ha="center", va="top", fontsize=8, color=ASKS)
-    _notes(axes, timeline.notes, "lesson", "v", INK, 1.22)
-    _notes(axes, timeline.notes, "alarm", "X", ASKS, 1.5)
+    for kind, (marker, colour, height) in _OF_NOTE.items():
+        times = [note.at_s for note in timeline.notes if note.kind == kind]
+        axes.plot(times, [height] * len(times), marker, markersize=6, color=colour, linestyle="none", clip_on=False)
     axes.set_ylim(-0.3, 1.75)
     axes.set_yticks([])
     axes.set_ylabel("what it did", fontsize=9.5, color=PALE_INK)
-
-
-def _one_by_one(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
-    for colour, group in groupby(
-        sorted(timeline.stretches, key=lambda each: colour_of(each, colours)), key=lambda each: colour_of(each, colours)
-    ):
-        spans = [(stretch.from_s, stretch.lasts_s) for stretch in group]
-        axes.broken_barh(spans, (0.0, 1.0), facecolors=colour, linewidth=0)
-
-
-def _shares_over_time(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
-    """Draw the share of each activity per interval of a long run."""
-    low_s, high_s = timeline.from_s, timeline.to_s
-    width_s = (high_s - low_s) / _INTERVALS
-    lasts: dict[str, list[float]] = {}
-    for stretch in timeline.stretches:
-        of_colour = lasts.setdefault(colour_of(stretch, colours), [0.0] * _INTERVALS)
-        first, last = ((each - low_s) / width_s for each in (stretch.from_s, stretch.to_s))
-        for place in range(int(first), min(_INTERVALS, int(last) + 1)):
-            of_colour[place] += max(0.0, min(place + 1, last) - max(place, first))
-    edges = [low_s + place * width_s for place in range(_INTERVALS + 1)]
-    below = [0.0] * (_INTERVALS + 1)
-    order = [*colours.values(), TEACHER, ASKS, STANDS]
-    for colour in sorted(lasts, key=order.index):
-        above = [low + share for low, share in zip(below, [*lasts[colour], lasts[colour][-1]], strict=True)]
-        axes.fill_between(edges, below, above, step="post", color=colour, linewidth=0)
-        below = above
-
-
-def _notes(axes: Axes, notes: Sequence[Note], kind: str, marker: str, colour: str, height: float) -> None:
-    times = [note.at_s for note in notes if note.kind == kind]
-    many = len(times) > _MOST_STRETCHES
-    axes.plot(
-        times,
-        [height] * len(times),
-        "|" if many else marker,
-        markersize=6,
-        color=colour,
-        alpha=0.3 if many else 1.0,
-        linestyle="none",
-        clip_on=False,
-    )
 
 
 def _familiarity(axes: Axes, timeline: Timeline) -> None:
@@ -204,8 +157,7 @@ def _familiarity(axes: Axes, timeline: Timeline) -> None:
     shown = [min(sample.share, _HIGHEST_SHARE) for sample in timeline.samples]
     axes.axhspan(0, 1, facecolor=_KNOWN, zorder=0)
     axes.axhline(1, color=_LIMIT, linewidth=1.4, linestyle=(0, (4, 2)), zorder=1)
-    wide = 1.1 if len(timeline.stretches) <= _MOST_STRETCHES else 0.3
-    axes.plot(times, shown, color=_CURVE, linewidth=wide, zorder=3)
+    axes.plot(times, shown, color=_CURVE, linewidth=0.9, zorder=3)
     above = [not math.isnan(share) and share > 1 for share in shown]
     axes.fill_between(times, 1, shown, where=above, color=ASKS, alpha=0.75, linewidth=0, zorder=2)
     highest = max((share for share in shown if not math.isnan(share)), default=1.0)
@@ -243,9 +195,8 @@ def _speeds(axes: Axes, timeline: Timeline) -> None:
     held_back = [sample.held_back for sample in timeline.samples]
     axes.fill_between(times, low, high, where=held_back, step="mid", color=_HELD_BACK, linewidth=0, zorder=0)
     axes.axhline(0, color="#e4e8ec", linewidth=0.8, zorder=1)
-    wide = 1.2 if len(timeline.stretches) <= _MOST_STRETCHES else 0.25
-    axes.plot(times, left, color=_LEFT, linewidth=wide, zorder=2)
-    axes.plot(times, right, color=_RIGHT, linewidth=wide, zorder=3)
+    axes.plot(times, left, color=_LEFT, linewidth=0.9, zorder=2)
+    axes.plot(times, right, color=_RIGHT, linewidth=0.9, zorder=3)
     axes.set_ylim(low, high)
     axes.set_ylabel("wheels, m/s", fontsize=9.5, color=PALE_INK)
 
@@ -253,14 +204,8 @@ def _speeds(axes: Axes, timeline: Timeline) -> None:
 def _legend(figure: Figure, timeline: Timeline, colours: Mapping[str, str]) -> None:
     kinds = {stretch.kind for stretch in timeline.stretches}
     handles: list[Patch | Line2D] = [Patch(color=colour, label=action) for action, colour in colours.items()]
-    for kind, colour, label in (
-        (Kind.LED, TEACHER, "led by a teacher"),
-        (Kind.ASKS, ASKS, "stands and asks"),
-        (Kind.STANDS, STANDS, "stands"),
-    ):
-        if kind in kinds:
-            handles.append(Patch(color=colour, label=label))
-    for kind_of_note, marker, colour in (("lesson", "v", INK), ("alarm", "X", ASKS)):
+    handles += [Patch(color=colour, label=label) for kind, (colour, label) in _OF_KIND.items() if kind in kinds]
+    for kind_of_note, (marker, colour, _) in _OF_NOTE.items():
         if any(note.kind == kind_of_note for note in timeline.notes):
             handles.append(Line2D([], [], marker=marker, linestyle="none", color=colour, label=kind_of_note))
     handles += [Line2D([], [], color=_LEFT, label="left wheels"), Line2D([], [], color=_RIGHT, label="right wheels")]

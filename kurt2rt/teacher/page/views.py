@@ -12,11 +12,9 @@ from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.simulation import EXAM, SIMULATION, ExamStatus, SimulationView, WorldView
 from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
-from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import GO_ON_PAGE, standing_headline
 from kurt2rt.core.outcome_text import Surface
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
-from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.question import FeatureDifference
 from kurt2rt.runs.explain.attribution import distance_attribution
 from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
@@ -42,7 +40,7 @@ def why_view(number: int, facts: DecisionFacts | None, words: SensorWords = NO_W
     view = {"kind": "answer", "number": number, "accepted": True, "text": text_of(PageNotice.NOTHING_DECIDED)}
     if facts is None:
         return {**view, "lines": [], "features": []}
-    level, rla = _leading(facts)
+    level, rla = facts.deciding
     lines = [*format_reasons(facts), format_guard(facts)]
     if rla is not None:
         lines += [*format_runner_up(level), format_teaching(rla), format_usage(rla)]
@@ -54,14 +52,6 @@ def why_view(number: int, facts: DecisionFacts | None, words: SensorWords = NO_W
         "rla": "" if rla is None else rla.title,
         "features": [] if rla is None else _features(level, rla, words),
     }
-
-
-def _leading(facts: DecisionFacts) -> tuple[LevelFacts, RlaFacts | None]:
-    """Return the level that decided, and its RLA that drives or is nearest."""
-    if facts.asks_at == MID and facts.mid is not None:
-        return facts.mid, facts.mid.nearest
-    driver = facts.basic.driver if facts.cause == DecisionCause.RLA else None
-    return facts.basic, driver or facts.basic.nearest
 
 
 def _features(level: LevelFacts, rla: RlaFacts, words: SensorWords) -> list[dict[str, Any]]:

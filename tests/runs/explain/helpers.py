@@ -75,7 +75,7 @@ class Lesson:
 
 def story(rla_id: int, condition: tuple[float, ...], action: str, distance: float, radius: float = 10.0) -> RlaFacts:
     taught = LessonFact(f"RLA {rla_id} taught: {action}", "Ann", 1, 100 * rla_id, "2026-11-22T03:10:05+00:00")
-    return RlaFacts(rla_id, f"RLA {rla_id}", action, condition, distance, radius, (taught,), 7, 7, 0, 0, None, False)
+    return RlaFacts(rla_id, f"RLA {rla_id}", action, condition, distance, radius, (taught,), 7, 0, 0, None, False)
 
 
 def level(vector: tuple[float, ...], *stories: RlaFacts, weights: tuple[float, ...] | None = None) -> LevelFacts:

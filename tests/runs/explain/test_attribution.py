@@ -43,3 +43,11 @@ def test_at_the_border_both_are_equally_near(
     assert border is not None
     there = tuple(x + border * (y - z) / apart for x, y, z in zip(here, other, one, strict=True))
     assert math.dist(there, one) == pytest.approx(math.dist(there, other), abs=1e-6)
+
+
+def test_contrast_of_the_nearest_is_the_next_with_another_action() -> None:
+    nearest, same, other = story(1, (1.0,), "back", 1), story(2, (2.0,), "back", 2), story(3, (3.0,), "stand", 3)
+    assert level((0.0,), nearest, same, other).contrast_of(nearest) is other
+    assert level((0.0,), nearest, same).contrast_of(nearest) is same
+    assert level((0.0,), nearest).contrast_of(nearest) is None
+    assert level((0.0,), nearest, same, other).contrast_of(other) is nearest

@@ -3,8 +3,6 @@
 from dataclasses import replace
 from pathlib import Path
 
-import pytest
-
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.runs.explain.recorded import explain_run
 from kurt2rt.runs.recording.recorder import open_run_recorder
@@ -18,7 +16,7 @@ from tests.teacher.helpers import teach
 WRITTEN = "2026-11-22T03:10:07.250+00:00"
 
 
-def taught_run(folder: Path, *, acknowledged: bool) -> Path:
+def taught_run(folder: Path) -> Path:
     """Record a run with a lesson in its first second; the slow disk gives its row a later date."""
     lesson, command = Lesson(), teach("forward")
     names = lesson.runtime.definition.names
@@ -30,20 +28,16 @@ def taught_run(folder: Path, *, acknowledged: bool) -> Path:
     for record in lesson.records:
         recorder.on_tick(record)
     recorder.write_waiting()
-    if acknowledged:
-        recorder.on_acknowledged(Acknowledgement(command.command_id, 1, None, WRITTEN))
+    recorder.on_acknowledged(Acknowledgement(command.command_id, 1, None, WRITTEN))
     recorder.write_waiting()
     recorder.close()
     lesson.close()
     return folder / NAME
 
 
-@pytest.mark.parametrize(
-    ("acknowledged", "stamp"), [(True, WRITTEN), (False, "2026-11-22T03:10:05+00:00")], ids=["kept", "never written"]
-)
-def test_lesson_of_the_run_has_the_date_of_its_journal_row(tmp_path: Path, acknowledged: bool, stamp: str) -> None:
-    run = read_run(taught_run(tmp_path, acknowledged=acknowledged))
+def test_lesson_of_the_run_has_the_date_of_its_journal_row(tmp_path: Path) -> None:
+    run = read_run(taught_run(tmp_path))
     nearest = explain_run(run, 1.0).facts.basic.nearest
     assert nearest is not None
     (act,) = nearest.acts
-    assert act.stamp == stamp
+    assert act.stamp == WRITTEN

@@ -86,5 +86,5 @@ def test_picture_of_a_decision_is_identical_each_time(taught_lesson: Lesson, tmp
     drawn = (tmp_path / f"one.{ending}").read_bytes()
     assert drawn == (tmp_path / f"two.{ending}").read_bytes()
     if ending == "svg":
-        for words in ("a title", "Now: tick 141", "As taught: RLA 2, bear_right", "Why not RLA 1, forward"):
+        for words in ("a title", "Now: tick 141", "As taught: RLA 2 (bear_right)", "to RLA 2", "RLA 1 (forward)"):
             assert words.encode() in drawn
