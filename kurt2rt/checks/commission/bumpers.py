@@ -30,7 +30,7 @@ class BumpersStep:
         Raises AbortedError if the operator leaves, BusError.
         """
         bumpers = stand.settings.bumpers
-        result = StepResult(findings.model_copy(update={"bumper_bits": {}}))
+        result = StepResult(stand, findings.model_copy(update={"bumper_bits": {}}))
         if not bumpers:
             result.note("the settings know no bumpers")
             return result
@@ -51,8 +51,8 @@ class BumpersStep:
                 result.fail(FaultCode.BUMPER_NOT_FOUND, bumper=bumper.name)
                 continue
             found[bumper.name] = bit
-            result.tell(
-                stand, f"{bumper.name}: bit {bit}" + (", as the table says" if bit == at else f", the table says {at}")
+            result.note(
+                f"{bumper.name}: bit {bit}" + (", as the table says" if bit == at else f", the table says {at}")
             )
         result.findings = findings.model_copy(update={"bumper_bits": found})
         return result

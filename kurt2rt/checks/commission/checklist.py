@@ -52,7 +52,7 @@ class WheelsOffGroundStep:
             if answer == SKIP:
                 raise SkippedError(SkipCode.NOT_LIFTED)
             if " ".join(answer.split()) == WORDS:
-                result = StepResult(findings)
+                result = StepResult(stand, findings)
                 result.note("confirmed by typing")
                 return result
             stand.tell(f"That was {answer!r}, not {WORDS!r}.", Tone.BAD)
@@ -138,12 +138,9 @@ class Checklist:
             at=self._now(),
             who=self._who,
             measured=tuple(result.measured),
-            to_do=tuple(each.text for each in result.faults),
             faults=tuple(result.faults),
         )
         await self._keep(step, record, result)
-        for line in result.unprinted:
-            self._stand.tell(line, Tone.MEASURED)
         if result.outcome is StepOutcome.PASSED:
             self._stand.tell(f"passed: {step.title}", Tone.GOOD)
             return False
@@ -185,7 +182,6 @@ class Checklist:
             at=self._now(),
             who=self._who,
             measured=(code.text,),
-            to_do=() if before is None else before.to_do,
             faults=() if before is None else before.faults,
             skipped=code,
         )

@@ -29,7 +29,7 @@ class IdentityStep:
         INFO_1, and the faults. Silence is a fault and raises nothing; a lost bus raises BusError.
         """
         heard = await stand.listen(_LISTEN_S)
-        result = StepResult(findings)
+        result = StepResult(stand, findings)
         if not heard.arrivals_s:
             result.fail(FaultCode.BUS_SILENT, bit_rate_bit_s=stand.settings.can.bit_rate_bit_s)
             for junk, count in heard.junk.items():

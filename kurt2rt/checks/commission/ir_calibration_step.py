@@ -14,7 +14,6 @@ from kurt2rt.checks.commission.test_stand import TestStand
 DISTANCES_M = (0.10, 0.15, 0.20, 0.30, 0.40, 0.50, 0.60)
 _MEASURE_S = 1.0
 _LEAST_FAR_M = 0.4
-_SECOND_LOOKS = 3
 
 
 class IrCalibrationStep:
@@ -35,7 +34,7 @@ class IrCalibrationStep:
 
         Raises SkippedError if no sensor is chosen, AbortedError if the operator leaves, BusError.
         """
-        result = StepResult(findings.model_copy(update={"law": None}))
+        result = StepResult(stand, findings.model_copy(update={"law": None}))
         chosen = await _choose(stand, findings)
         await stand.ask(
             OperatorQuestion(QuestionKind.CLEAR, "Step back: nothing within a metre.", (AnswerChoice("", "measure"),))
@@ -49,7 +48,7 @@ class IrCalibrationStep:
         floor = statistics.median([each for each in floors if each is not None])
         readings = await _read_all(stand, chosen, findings)
         try:
-            fit = await _fit_with_second_looks(stand, readings, {each.name: each for each in chosen}, findings)
+            fit = fit_law(readings)
         except IrCalibrationError as error:
             result.faults.append(error.fault)
             result.measured += [f"{each.sensor} at {each.distance_m:.2f} m: {each.counts:.0f}" for each in readings]
@@ -106,15 +105,12 @@ async def _choose(stand: TestStand, findings: Findings) -> tuple[Kurt2SensorSett
 
 
 async def _read(
-    stand: TestStand, sensor: Kurt2SensorSettings, distance_m: float, findings: Findings, again: str = ""
+    stand: TestStand, sensor: Kurt2SensorSettings, distance_m: float, findings: Findings
 ) -> IrReading | None:
     question = OperatorQuestion(
         QuestionKind.BOARD,
-        f"{again}The board {distance_m:.2f} m before {sensor.label} ({sensor.name}).",
-        (
-            AnswerChoice("", "measure"),
-            AnswerChoice(SKIP, "leave this distance out" if not again else "keep the first reading"),
-        ),
+        f"The board {distance_m:.2f} m before {sensor.label} ({sensor.name}).",
+        (AnswerChoice("", "measure"), AnswerChoice(SKIP, "leave this distance out")),
         subject=sensor.name,
         distance_m=distance_m,
     )
@@ -127,25 +123,6 @@ async def _read(
         return None
     stand.tell(f"{sensor.name} at {distance_m:.2f} m: {counts:.0f} counts", Tone.MEASURED)
     return IrReading(sensor.name, distance_m, counts)
-
-
-async def _fit_with_second_looks(
-    stand: TestStand, readings: list[IrReading], sensors: dict[str, Kurt2SensorSettings], findings: Findings
-) -> IrFit:
-    """Fit, and repeat the measurement of a few outliers. Raises IrCalibrationError."""
-    looked_twice: set[int] = set()
-    while True:
-        fit = fit_law(readings)
-        again = [at for at in fit.outliers if at not in looked_twice]
-        if not again or len(looked_twice) >= _SECOND_LOOKS:
-            return fit
-        at = again[0]
-        looked_twice.add(at)
-        odd = readings[at]
-        why = f"{odd.counts:.0f} counts do not fit, the others say {fit.law.counts_at(odd.distance_m):.0f}. Once more: "
-        better = await _read(stand, sensors[odd.sensor], odd.distance_m, findings, why)
-        if better is not None:
-            readings[at] = better
 
 
 def _rows(readings: list[IrReading], fit: IrFit) -> list[str]:

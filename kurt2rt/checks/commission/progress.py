@@ -64,10 +64,13 @@ class StepRecord(Settings):
     """Date and time, UTC, to the minute."""
     who: str
     measured: tuple[str, ...] = ()
-    to_do: tuple[str, ...] = ()
-    """Instruction for each fault, in words."""
     faults: tuple[StepFault, ...] = ()
     skipped: SkipCode | None = None
+
+    @property
+    def to_do(self) -> tuple[str, ...]:
+        """Instruction for each fault, in words."""
+        return tuple(each.text for each in self.faults)
 
 
 class Progress(Settings):

@@ -17,7 +17,6 @@ _LEAST_RISE = 60.0
 """Counts; a hand at 0.2 m adds about 220 to an empty room, and 100 to a wall at 0.3 m."""
 _CLEARLY = 1.7
 """Required ratio of the two largest rises."""
-_FORGET = "f"
 _ALL = "a"
 
 
@@ -47,7 +46,7 @@ class SensorsStep:
         await stand.listen(SETTLE_S)
         heard = await stand.listen(_BASELINE_S)
         if not heard.channels:
-            result = StepResult(findings)
+            result = StepResult(stand, findings)
             result.fail(FaultCode.CHANNELS_SILENT)
             return result
         empty = {channel: heard.median(channel) or 0.0 for channel in heard.channels}
@@ -55,11 +54,15 @@ class SensorsStep:
         waiting = [sensor for sensor in sensors if sensor.name not in found]
         while waiting:
             sensor = waiting.pop(0)
-            answer = await _find(stand, sensor, empty, found, dead)
-            if answer is not None:  # an earlier hand was at the wrong sensor: that one is asked for again
-                del found[answer]
-                waiting = [sensor, *waiting, *(each for each in sensors if each.name == answer)]
-        result = StepResult(findings.model_copy(update={"channels": found, "dead_sensors": tuple(dead)}))
+            channel = await _find(stand, sensor, empty, dead)
+            owner = next((name for name, its in found.items() if its == channel), None)
+            if owner is not None:  # one of the two hands was at the wrong sensor
+                stand.tell(f"That was {owner}'s before: {owner} is asked for again.", Tone.BAD)
+                del found[owner]
+                waiting += [each for each in sensors if each.name == owner]
+            if channel is not None:
+                found[sensor.name] = channel
+        result = StepResult(stand, findings.model_copy(update={"channels": found, "dead_sensors": tuple(dead)}))
         for sensor in sensors:
             result.note(_row(sensor, found, dead))
         not_tried = [sensor.name for sensor in sensors if sensor.name not in (*found, *dead)]
@@ -85,9 +88,9 @@ async def _kept(stand: TestStand, findings: Findings, sensors: Sequence[Kurt2Sen
 
 
 async def _find(
-    stand: TestStand, sensor: Kurt2SensorSettings, empty: Mapping[str, float], found: dict[str, str], dead: list[str]
+    stand: TestStand, sensor: Kurt2SensorSettings, empty: Mapping[str, float], dead: list[str]
 ) -> str | None:
-    """Ask until a channel is found or the sensor is given up; return a sensor to be repeated, if any."""
+    """Ask until a channel answers or the sensor is given up; return the channel."""
     tried = False
     while True:
         question = OperatorQuestion(
@@ -114,20 +117,8 @@ async def _find(
         if len(rises) > 1 and rise < _CLEARLY * rises[1][1]:
             stand.tell(f"{channel} and {rises[1][0]} both answered: take your hand away from the neighbours", Tone.BAD)
             continue
-        owner = next((name for name, its in found.items() if its == channel), None)
-        if owner is None:
-            found[sensor.name] = channel
-            stand.tell(f"{_format_channel(sensor, channel)}, {rise:+.0f} counts", Tone.MEASURED)
-            return None
-        stand.tell(f"{channel} answered, but that was {owner}'s already.", Tone.BAD)
-        taken = OperatorQuestion(
-            QuestionKind.HAND,
-            f"Your hand before {sensor.label} ({sensor.name}) again, or was it {owner}'s turn that was wrong?",
-            (AnswerChoice("", "measure again"), AnswerChoice(_FORGET, f"{owner} was wrong, ask for it again later")),
-            subject=sensor.name,
-        )
-        if await stand.ask(taken) == _FORGET:
-            return owner
+        stand.tell(f"{_format_channel(sensor, channel)}, {rise:+.0f} counts", Tone.MEASURED)
+        return channel
 
 
 def _format_channel(sensor: Kurt2SensorSettings, channel: str) -> str:

@@ -41,13 +41,13 @@ class SpeedModesStep:
         Raises SkippedError if the operator refuses the motion, AbortedError if the operator leaves, BusError.
         """
         robot = stand.settings
-        result = StepResult(findings.model_copy(update={"speed_mode": None, "full_speed_m_s": None}))
+        result = StepResult(stand, findings.model_copy(update={"speed_mode": None, "full_speed_m_s": None}))
         trials: list[_Trial] = []
         for mode in PREFERENCE:
             try:
                 await confirm_motion(stand, f"All wheels turn forward, then backward: mode {mode}.")
             except SkippedError:
-                result.tell(stand, f"{mode}: left out")
+                result.note(f"{mode}: left out")
                 continue
             trial = _Trial(mode)
             for sign in (1.0, -1.0):
@@ -57,7 +57,7 @@ class SpeedModesStep:
                     return result
                 if standstill_cause(drive) is not None:
                     break
-            result.tell(stand, trial.text(robot))
+            result.note(trial.text(robot))
             trials.append(trial)
         return _conclude(trials, robot, result)
 

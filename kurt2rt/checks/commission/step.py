@@ -13,25 +13,19 @@ from kurt2rt.checks.commission.test_stand import TestStand
 class StepResult:
     """Result of a step: measured lines, findings and faults. The step passed if it found no fault."""
 
+    stand: TestStand
     findings: Findings
     measured: list[str] = field(default_factory=list)
     faults: list[StepFault] = field(default_factory=list)
-    unprinted: list[str] = field(default_factory=list)
-    """Measured lines that were not shown yet."""
 
     def fail(self, code: FaultCode, **fields: Field) -> None:
         """Add a fault of a code; `fields` fill the gaps in the code's text."""
         self.faults.append(StepFault(code, fields))
 
     def note(self, line: str) -> None:
-        """Add a measured line that is shown at the end of the step."""
+        """Add a measured line, and show it to the operator."""
         self.measured.append(line)
-        self.unprinted.append(line)
-
-    def tell(self, stand: TestStand, line: str) -> None:
-        """Add a measured line and show it at once."""
-        self.measured.append(line)
-        stand.tell(line, Tone.MEASURED)
+        self.stand.tell(line, Tone.MEASURED)
 
     @property
     def outcome(self) -> StepOutcome:

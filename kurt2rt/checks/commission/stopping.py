@@ -43,14 +43,14 @@ class StoppingStep:
         BusError.
         """
         mode = required_speed_mode(findings)
-        result = StepResult(findings.model_copy(update={"controller_watchdog_s": None}))
+        result = StepResult(stand, findings.model_copy(update={"controller_watchdog_s": None}))
         await confirm_motion(stand, "All wheels turn forward; then the brake.")
         drive = await stand.drive(mode, _FORWARD, DRIVE_S)
         rested_s = drive.rested_after_s
         if not require_rest(stand, drive, result) or rested_s is None:
             return result
         if _was_turning(stand, drive, result):
-            result.tell(stand, f"braked: the wheels stood {rested_s * 1000:.0f} ms after the frame")
+            result.note(f"braked: the wheels stood {rested_s * 1000:.0f} ms after the frame")
             if rested_s > BRAKED_WITHIN_S:
                 result.fail(FaultCode.BRAKE_SLOW, took_s=rested_s, most_s=BRAKED_WITHIN_S)
         await confirm_motion(stand, f"All wheels turn forward; then nothing is sent for at most {SILENT_S} s.")
@@ -74,8 +74,7 @@ def _judge_watchdog(stand: TestStand, drive: TestDrive, result: StepResult) -> N
         result.fail(FaultCode.WATCHDOG_MISSING, silent_s=SILENT_S)
         return
     fell_s = _fell_after_s(stand, drive)
-    result.tell(
-        stand,
+    result.note(
         f"without CONTROL: the drive dropped out after {fell_s * 1000:.0f} ms, "
         f"the wheels stood after {drive.rested_after_s * 1000:.0f} ms",
     )

@@ -39,7 +39,7 @@ class WheelsStep:
         BusError.
         """
         mode = required_speed_mode(findings)
-        result = StepResult(findings)
+        result = StepResult(stand, findings)
         trials: list[WheelTrial] = []
         fastest_m_s: dict[WheelSide, float] = {}
         for side in WheelSide:
@@ -56,8 +56,7 @@ class WheelsStep:
                 seen = await _seen(stand, ordered, counted)
                 trials.append(WheelTrial(ordered, seen, counted))
                 fastest_m_s[side] = max(map(abs, speeds))
-                result.tell(
-                    stand,
+                result.note(
                     f"ordered {ordered}, seen {seen}, encoders {counted} "
                     f"({speeds.left_m_s:+.3f} and {speeds.right_m_s:+.3f} m/s)",
                 )
