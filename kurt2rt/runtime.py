@@ -15,10 +15,8 @@ from kurt2rt.core.basic.obstacle_memory import ObstacleMemory
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.critic import Critic
-from kurt2rt.core.critic.settings import CriticSettings
-from kurt2rt.core.critic.sides import critic_of
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Level
+from kurt2rt.core.critic.settings import CriticSettings, critic_of
+from kurt2rt.core.decision.decision import ActiveBehaviour, Level
 from kurt2rt.core.event_store import EventStore
 from kurt2rt.core.expectations.tracker import ExpectationTracker
 from kurt2rt.core.layer_stack import LayerStack

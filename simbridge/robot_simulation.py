@@ -2,11 +2,12 @@
 
 import math
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import shapely
 
@@ -14,18 +15,55 @@ from config.settings_files import YAML_SUFFIXES
 from hal.guard_reason import GuardReason
 from hal.guarded_robot import GuardedRobot
 from hal.kurt2 import Kurt2
+from hal.kurt2_settings import Kurt2Settings
 from hal.linked_robot import LinkedRobot
 from hal.robot import GuardResult, WheelSpeeds
 from hal.robot_settings import RobotSettings
+from hal.tap import Tap
 from simbridge.contracts.simulation import LiveSimulation, Pose, Position, WallSide, WorldPlan
-from simbridge.realtime import RealtimeSimulation
+from simbridge.links import CanLine, SimulatedLink
+from simbridge.realtime import RealtimeSimulation, RealtimeWorld, plan_of
 from simbridge.robot.world import World
-from simbridge.simulated_link import SimulatedLink
-from simbridge.simulated_robot import SimulatedRobot
-from simbridge.simulated_world import RealtimeWorld, plan_of
+from simbridge.simulated_robot import SimulatedKurt2, SimulatedRobot
+from simbridge.survey.drawing import draw_robot, draw_world
 from simbridge.survey.free_poses import FreePoses
 from simbridge.worlds.geometry import Point
+from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True, slots=True)
+class RobotWorlds:
+    """Base of factories of simulations: checks, plans and draws a robot's worlds; subclasses add `open` and `live`."""
+
+    settings: RobotSettings
+
+    def require_worlds(self, *worlds: str) -> None:
+        """Check each world, so that a long job does not fail at its last one. Raises SettingsError."""
+        for world in worlds:
+            load_world(world, self.settings)
+
+    def plan_of(self, world: str) -> WorldPlan:
+        """Return a world from above. Raises config.settings.SettingsError for an unknown world."""
+        return plan_of(load_world(world, self.settings))
+
+    def draw(self, axes: "Axes", world: str) -> None:
+        """Draw a world from above on axes in m. Raises config.settings.SettingsError for an unknown world."""
+        draw_world(axes, load_world(world, self.settings))
+
+    def draw_robot(self, axes: "Axes", world: str) -> None:
+        """Draw the robot at the first start pose of a world, on axes in m.
+
+        Raises config.settings.SettingsError for an unknown world.
+        """
+        draw_robot(axes, load_world(world, self.settings).start_poses[0].pose, self.settings)
+
+    def settings_of(self, world: str) -> str:
+        """Return all settings of a world as a text. Raises config.settings.SettingsError for an unknown world."""
+        return load_world(world, self.settings).model_dump_json(serialize_as_any=True)
 
 
 class Clearance:
@@ -256,3 +294,48 @@ class StallTolerantKurt2(StallTolerant, Kurt2):
 
 class StallTolerantLinkedRobot(StallTolerant, LinkedRobot):
     """Robot over a RobotLink whose simulation stalls with its driver."""
+
+
+class Kurt2Simulation(RobotSimulation):
+    """The simulated KURT2 in one world, on a CAN bus of its own (simbridge.contracts.simulation.Simulation)."""
+
+    simulated_robot: SimulatedKurt2
+    robot: Kurt2
+
+    def __init__(
+        self,
+        settings: Kurt2Settings,
+        world: str,
+        seed: int,
+        purpose: str,
+        driver: type[Kurt2] = Kurt2,
+        loaded: WorldSettings | None = None,
+        open_line: Callable[[], CanLine] = CanLine,
+    ) -> None:
+        """`seed` makes the robot, with the spread of its sensors; together with `purpose` it makes start and noise.
+
+        `driver`: drives the simulated robot over its bus. `loaded`: settings of the world; None: they are loaded.
+        `open_line`: opens the bus that carries the frames. Raises BusError.
+        """
+        loaded = loaded or load_world(world, settings)
+        chance = chance_of(world, seed, purpose)
+        noise_seed = chance.getrandbits(32)
+        line = open_line()
+        simulated = SimulatedKurt2(settings, loaded, line.robot_end, noise_seed, robot_seed=seed)
+        self._notebook_end = line.notebook_end
+        super().__init__(settings, simulated, driver(settings, line.notebook_end), line, chance)
+
+    def follow(self, poses: Sequence[Pose]) -> None:
+        """Be at the last of these poses, one for each cycle that a batch simulated.
+
+        The simulation can be stepped no more.
+        """
+        self.simulated_robot.follow(poses)
+
+    def carry(self, pose: Pose) -> None:
+        """Set the robot to the pose at which the batch put it."""
+        self.simulated_robot.carry(pose)
+
+    def attach_tap(self, tap: Tap | None) -> None:
+        """Set the tap of the notebook's bus interface; None: none."""
+        self._notebook_end.tap = tap

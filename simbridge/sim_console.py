@@ -9,8 +9,7 @@ from typing import TextIO
 
 from simbridge.contracts.simulation import Pose
 from simbridge.contracts.world_refusal import WorldRefusedError
-from simbridge.realtime import StandaloneRobot
-from simbridge.simulated_world import RealtimeWorld
+from simbridge.realtime import RealtimeWorld, StandaloneRobot
 from simbridge.worlds.world_settings import WorldSettings
 
 HELP = """\

@@ -1,4 +1,4 @@
-"""Simulated robot of any kind: body, wheels, sensors, bumpers, and its electronics at one end of a link."""
+"""Simulated robot: body, wheels, sensors, bumpers, and its electronics at one end of a link; and KURT2's."""
 
 import hashlib
 import struct
@@ -6,13 +6,17 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import NamedTuple, Protocol
 
+from hal.kurt2_settings import Kurt2Settings
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
 from simbridge.contracts.simulation import Pose, WallSide
 from simbridge.controller.controller import Controller
+from simbridge.controller.microcontroller import MicroController
+from simbridge.controller.telemetry import ControllerBus
 from simbridge.robot.body import Body
 from simbridge.robot.bumpers import Bumpers, CollisionCounter
 from simbridge.robot.infrared import InfraredSensors
+from simbridge.robot.instruments import Instruments
 from simbridge.robot.noise import Noise
 from simbridge.robot.wheels import Wheels
 from simbridge.robot.world import World
@@ -252,3 +256,33 @@ def hash_state(numbers: Sequence[float], counters: Sequence[int]) -> str:
     """
     layout = f"<{len(numbers)}d{len(counters)}q"
     return hashlib.sha256(struct.pack(layout, *numbers, *counters)).hexdigest()
+
+
+class SimulatedKurt2(SimulatedRobot):
+    """KURT2 whose time advances only by `step`; equal seeds and frames give equal runs."""
+
+    controller: MicroController
+    infrared: InfraredSensors
+
+    def __init__(
+        self,
+        robot: Kurt2Settings,
+        world: WorldSettings,
+        bus: ControllerBus,
+        seed: int,
+        *,
+        robot_seed: int | None = None,
+        wheels: Wheels | None = None,
+    ) -> None:
+        """Place the robot at the world's first start pose; the caller shuts `bus` down.
+
+        Args: `seed`, `robot_seed` and `wheels` as in `SimulatedRobot`.
+        """
+        super().__init__(
+            robot,
+            world,
+            lambda body, wheels: MicroController(robot, bus, Instruments(robot, body, wheels)),
+            seed,
+            robot_seed=robot_seed,
+            wheels=wheels,
+        )

@@ -44,7 +44,7 @@ _MODULES = (
     "behaviors.metrics.laps",
     "kurt2rt.teacher.page.server",
     "kurt2rt.service.serve",
-    "simbridge.simulated_world",
+    "simbridge.realtime",
     "numpy.ma",
     "rich._emoji_codes",
     "simbridge.realtime",

@@ -331,7 +331,7 @@ def _live_view(address: str | None) -> tuple[str, int] | None:
 
 
 def _require_behaviour(task: "TaskSettings", behaviour: str | None) -> None:
-    from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
+    from kurt2rt.core.decision.decision import ActiveBehaviour
     from kurt2rt.core.outcome import CommandRefusedError
     from kurt2rt.core.outcome_text import text_of
 

@@ -21,7 +21,7 @@ from kurt2rt.service.console_thread import ConsoleThread
 from simbridge.contracts.robot_kind import kind_of
 
 if TYPE_CHECKING:
-    from simbridge.robot_end import RobotEnd
+    from simbridge.links import RobotEnd
 
 _END_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _POLL_S = 0.05
@@ -87,9 +87,8 @@ def sim(options: _Options) -> None:
 
 def _simulate(options: _Options, settings: RobotSettings) -> None:
     # Here, because a robot carries no simulator: the packages it needs are an extra.
-    from simbridge.realtime import StandaloneRobot
+    from simbridge.realtime import RealtimeWorld, StandaloneRobot
     from simbridge.sim_console import News, SimConsole, StatusLine, TypedLines
-    from simbridge.simulated_world import RealtimeWorld
     from simbridge.worlds.world_loading import load_world
 
     ground_plan = load_world(options.world, settings)

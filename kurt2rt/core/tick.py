@@ -6,11 +6,17 @@ from dataclasses import dataclass, replace
 from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import STANDSTILL, GuardResult, SensorReadings
 from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import ASKING, BY_KNOWLEDGE, Decision, DecisionCause, stopped
 from kurt2rt.core.decision.open_question import OpenQuestion
-from kurt2rt.core.decision.standing import BumperWatch, Standing, StandingWatch, hindrance_after_resume
-from kurt2rt.core.expectations.surprise import Surprise
+from kurt2rt.core.decision.standing import (
+    ActiveStop,
+    BumperWatch,
+    Standing,
+    StandingWatch,
+    StopReason,
+    hindrance_after_resume,
+)
+from kurt2rt.core.expectations.expectations import Surprise
 from kurt2rt.core.mid.mid_level import MidUsageCounter
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.perception.perception import Situation

@@ -8,7 +8,7 @@ from hal.sensor_watch import BrokenSensor
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.decision.decision import Decision, MidDecision
 from kurt2rt.core.decision.standing import DRIVES, Standing
-from kurt2rt.core.expectations.surprise import Surprise
+from kurt2rt.core.expectations.expectations import Surprise
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import Rla

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import SensorReadings
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
-from kurt2rt.core.critic.sides import critic_of
+from kurt2rt.core.critic.settings import critic_of
 from kurt2rt.core.perception.definition import SituationDefinition, load_situation
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings

@@ -12,7 +12,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.basic.taught_action import TaughtSystem
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
+from kurt2rt.core.decision.decision import ActiveBehaviour
 from kurt2rt.core.layer_stack import LayerStack
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.place import PlaceSettings

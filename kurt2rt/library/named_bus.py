@@ -24,7 +24,7 @@ def require_bus(name: str, settings: Kurt2Settings, net: Path = NET_FOLDER) -> N
     if ":" not in name:
         _require_vcan(name, net)
     # Late import: the simulator is an extra.
-    from simbridge.robot_end import require_free_bus
+    from simbridge.links import require_free_bus
 
     bus = open_bus(name)
     try:

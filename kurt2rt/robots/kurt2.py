@@ -35,7 +35,7 @@ class Kurt2Kind:
     def serve(self, settings: RobotSettings, address: str) -> object:
         """Return the robot's end of a bus, for a simulated robot that other programs drive. Raises BusError."""
         from hal.bus import open_bus
-        from simbridge.robot_end import CanRobotEnd
+        from simbridge.links import CanRobotEnd
 
         return CanRobotEnd(require_kurt2(settings, "this simulation"), open_bus(address))
 

@@ -15,7 +15,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.server.channel import Channel, open_channel
 from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
+from kurt2rt.core.decision.decision import ActiveBehaviour
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.exchange.package import package_knowledge
 from kurt2rt.knowledge.files.backup import BackupService

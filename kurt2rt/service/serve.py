@@ -18,7 +18,7 @@ from kurt2rt.channel.protocol.health import HEALTH
 from kurt2rt.channel.protocol.limits import BOOT_BYTES, FASTEST
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.channel.server.dependencies import RunControl
-from kurt2rt.core.decision.active_stop import NEXT_RUN, STARTED
+from kurt2rt.core.decision.standing import NEXT_RUN, STARTED
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal

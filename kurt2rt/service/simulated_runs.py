@@ -15,8 +15,7 @@ from kurt2rt.channel.protocol.simulation import ExamStatus, SimulationView, Task
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import UnknownActionError, UnknownBehaviourError
+from kurt2rt.core.decision.decision import ActiveBehaviour, UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode

@@ -42,8 +42,7 @@ from simbridge.contracts.batch import (
 )
 from simbridge.contracts.simulation import Pose
 from simbridge.robot.bumpers import CollisionCounter
-from simbridge.simulated_kurt2 import SimulatedKurt2
-from simbridge.simulated_robot import hash_state
+from simbridge.simulated_robot import SimulatedKurt2, hash_state
 
 _REASONS = {
     STAYS: "",

@@ -12,7 +12,7 @@ from simbridge.batch.record import Robot
 from simbridge.contracts.batch import BatchRefusedError
 from simbridge.contracts.simulation import Pose
 from simbridge.robot.body import BodyState
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 
 REMEMBERED_TICKS = 5
 """Ticks without a touch after which the engine has forgotten a contact; it keeps one for three steps."""

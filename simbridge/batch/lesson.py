@@ -1,4 +1,4 @@
-"""Robot of a lesson in a batch: it drives compiled stretches, which can be taken back."""
+"""Robot of a lesson in a batch, and its simulation: it drives compiled stretches, which can be taken back."""
 
 from itertools import starmap
 
@@ -15,7 +15,8 @@ from simbridge.contracts.areas import Borders
 from simbridge.contracts.batch import STANDS, BatchRefusedError, DriveSettings, PolicyMind
 from simbridge.contracts.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtRlas
 from simbridge.contracts.simulation import Pose
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.robot_simulation import Kurt2Simulation
+from simbridge.simulated_robot import SimulatedKurt2
 
 MOST_TICKS = STRETCH // 2
 """Most ticks after a `keep`: half of the random numbers that lie ahead are used up at most before more are drawn."""
@@ -225,3 +226,28 @@ class CompiledLesson(RobotBatch):
         self._saved[0] = self._robots[0]
         for array, saved in zip(self._learner, self._saved_learner, strict=True):
             saved[:] = array
+
+
+class LessonSimulation(Kurt2Simulation):
+    """Simulation whose robot drives in compiled stretches; bus and world stay behind, and its pose follows."""
+
+    def __init__(
+        self, settings: Kurt2Settings, world: str, seed: int, purpose: str, lesson: LessonDriveSettings
+    ) -> None:
+        """Open the simulation of `seed` and `purpose`. Raises BatchRefusedError for what the batch does not know."""
+        super().__init__(settings, world, seed, purpose)
+        self.lesson = CompiledLesson(settings, self.simulated_robot, lesson)
+
+    @property
+    def collisions(self) -> int:
+        """Contacts with walls or obstacles so far."""
+        return int(self.lesson.log.collisions[self.lesson.tick])
+
+    @property
+    def touching(self) -> bool:
+        """True while the robot touches something."""
+        return bool(self.lesson.log.touching[self.lesson.tick])
+
+    def put(self, pose: Pose) -> None:
+        """Put the robot, standing, at this pose; only after `keep`."""
+        self.lesson.put_down(pose)

@@ -32,7 +32,7 @@ from simbridge.robot.body import Body
 from simbridge.robot.bumpers import CollisionCounter
 from simbridge.robot.infrared import RECESS_M, InfraredSensors
 from simbridge.robot.ray_caster import faces_of
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 from simbridge.worlds.world_settings import WorldSettings
 
 _LOOKS = (

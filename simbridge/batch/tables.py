@@ -26,7 +26,7 @@ from simbridge.contracts.batch import (
     PolicyMind,
     TaughtMind,
 )
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 
 _POLICIES = {WallFollowing: WALL_FOLLOWING, Fleeing: FLEEING, Circle: CIRCLE, Eight: EIGHT, Streets: STREETS}
 _MOST_NEIGHBOURS = 128

@@ -39,7 +39,7 @@ class RobotKind(Protocol):
         ...
 
     def serve(self, settings: RobotSettings, address: str) -> object:
-        """Return the end of the link at which a simulated robot is (simbridge.robot_end.RobotEnd), for other programs.
+        """Return the end of the link at which a simulated robot is (simbridge.links.RobotEnd), for other programs.
 
         Raises hal.bus.BusError if the address cannot be opened or a robot is there.
         """

@@ -13,7 +13,7 @@ from hal.robot import STANDSTILL
 from kurt2rt.channel.protocol.requests import NextRunRequest, SpeedRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.server.dependencies import TeacherNow
-from kurt2rt.core.decision.active_stop import NEXT_RUN
+from kurt2rt.core.decision.standing import NEXT_RUN
 from kurt2rt.core.outcome import CommandRefusedError, Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task

@@ -10,10 +10,9 @@ import pytest
 from hal.bus import CanBus, open_bus
 from hal.control import Mode, SpeedControl, SystemControl, control_frame
 from simbridge.contracts.world_refusal import WorldRefusal, WorldRefusedError
-from simbridge.realtime import StandaloneRobot
-from simbridge.robot_end import CanRobotEnd
+from simbridge.links import CanRobotEnd
+from simbridge.realtime import RealtimeWorld, StandaloneRobot
 from simbridge.sim_console import HELP, News, SimConsole, StatusLine, TypedLines
-from simbridge.simulated_world import RealtimeWorld
 from simbridge.worlds.world_loading import load_world
 from tests.patience import PATIENCE_S
 from tests.simbridge.rig import ROBOT

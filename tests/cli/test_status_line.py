@@ -7,8 +7,7 @@ import pytest
 from hal.bus_state import ControllerState
 from hal.guard_reason import GuardReason
 from hal.health import Health
-from kurt2rt.core.decision.active_stop import STARTED
-from kurt2rt.core.decision.standing import short_text
+from kurt2rt.core.decision.standing import STARTED, short_text
 from kurt2rt.service.post_tick import ProgramStatus
 from kurt2rt.service.status_line import status_line
 from tests.channel.channel_fixture import ChannelFixture

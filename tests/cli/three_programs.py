@@ -14,7 +14,7 @@ from hal.codec import load_codec
 from hal.control import RawControl, decode_control
 from hal.kurt2_settings import load_kurt2
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.core.decision.standing import STARTED
 from kurt2rt.core.teaching.commands import Resume, Take, Teach
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import NoAnswerError

@@ -5,8 +5,7 @@ from numpy.typing import NDArray
 
 from hal.robot import SensorReadings
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause, JunctionEvent, MidDecision
+from kurt2rt.core.decision.decision import ActiveBehaviour, Decision, DecisionCause, JunctionEvent, MidDecision
 from kurt2rt.core.layer_stack import LayerStack
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.settings import load_mid_level

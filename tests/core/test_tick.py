@@ -11,8 +11,7 @@ from behaviors.motor_primitive import MotorPrimitive
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import ActiveBehaviour, Decision, DecisionCause
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.perception.perception import Perception

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import pytest
 
-from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.decision.standing import STARTED
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import ActionWithdrawn, Appraised, RlaCreated, RlaRewarded, TeachingEvent

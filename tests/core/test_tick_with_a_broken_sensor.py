@@ -9,8 +9,8 @@ import pytest
 from hal.robot_settings import load_robot
 from hal.sensor_ring import SubstituteReadings
 from hal.sensor_signs import SensorFault
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause, StandReason
+from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.teaching.commands import Resume, Teach, Watch
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, FaultySensor

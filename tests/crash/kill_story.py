@@ -23,7 +23,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.limits import COMMAND_ID_BYTES
 from kurt2rt.channel.protocol.requests import Request, tick_request
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.core.decision.standing import STARTED
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import Correct, Resume, Reward, SetPhase, Take, Teach, Undo
 from kurt2rt.knowledge.journal.entry import StoredEntry

@@ -9,7 +9,7 @@ import pytest
 from behaviors.repertoire import load_repertoire
 from hal.health import Health
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
+from kurt2rt.core.decision.decision import ActiveBehaviour
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Command, Correct, Teach
@@ -23,7 +23,7 @@ from kurt2rt.service.assembly import RobotService
 from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus
 from kurt2rt.service.settings import load_service
 from kurt2rt.service.status_line import status_line
-from simbridge.kurt2_simulation import Kurt2Simulation
+from simbridge.robot_simulation import Kurt2Simulation
 from tests.channel.channel_fixture import STAMP
 from tests.experiments.helpers import ROBOT
 

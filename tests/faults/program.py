@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hal.guard_reason import GuardReason
 from hal.kurt2_settings import Kurt2Settings
-from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.core.decision.standing import STARTED
 from kurt2rt.core.rla.rla import SCRIPTED
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Command, ReplaceAction, Stop, Take

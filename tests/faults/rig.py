@@ -9,7 +9,7 @@ from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from hal.tap import Tap
 from hal.watchdog import POLL_S
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
 from tests.faults.cable import SOUND, CableFaults
 from tests.faults.fault import FaultInjection, SimulatedTime

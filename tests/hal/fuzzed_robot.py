@@ -13,13 +13,13 @@ from hal.in_process_bus import InProcessBus
 from hal.kurt2 import Kurt2
 from hal.shared_bus import SharedBus
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
+from kurt2rt.core.decision.decision import ActiveBehaviour
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 from simbridge.worlds.world_loading import load_world
 from tests.hal.fuzz_frames import FuzzFrames
 from tests.hal.helpers import ROBOT, TICK_S

@@ -12,7 +12,7 @@ from hal import sender_watch
 from hal.bus import CONTROL_ID, open_bus
 from hal.in_process_bus import InProcessBus
 from simbridge.controller.microcontroller import CRASH_STEP_M_S, MicroController
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 from simbridge.worlds.world_loading import load_world
 from tests.hal.fuzz_frames import CONTROL_MODES, FuzzFrames
 from tests.hal.fuzzed_robot import FuzzedRobot

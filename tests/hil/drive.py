@@ -11,7 +11,7 @@ from hal.kurt2 import Kurt2
 from hal.kurt2_settings import load_kurt2
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from simbridge.controller.reconnecting_bus import ReconnectingBus
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 from tests.simbridge.rig import room
 
 FORWARD = WheelSpeeds(0.3, 0.3)

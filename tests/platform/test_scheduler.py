@@ -8,7 +8,7 @@ from behaviors.motor_primitive import MotorPrimitive
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
+from kurt2rt.core.decision.decision import ActiveBehaviour
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import StatisticsCounter

@@ -27,7 +27,7 @@ from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.build import build_teacher
 from simbridge.realtime import RealtimeSimulation
 from simbridge.robot_simulation import StallTolerantKurt2
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 from simbridge.worlds.world_loading import load_world
 from tests.patient_shutdown import extend_deadlines
 

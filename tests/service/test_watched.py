@@ -12,7 +12,7 @@ import anyio
 import anyio.to_thread
 import pytest
 
-from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.core.decision.standing import STARTED
 from kurt2rt.core.teaching.commands import Take
 from kurt2rt.teacher import TeacherClient
 from tests.cli.helpers import Running, running, started

@@ -6,9 +6,9 @@ from hal.robot import WheelSpeeds
 from hal.robot_link import BumperReport, RangeReport, Report, WheelReport
 from hal.robot_settings import RobotSettings
 from simbridge.controller.controller import MOTORS_BRAKED, MotorCommands
+from simbridge.links import InstantLink
 from simbridge.robot.body import Body
 from simbridge.robot.wheels import Wheels
-from simbridge.simulated_link import InstantLink
 
 
 class DirectController:
@@ -79,7 +79,7 @@ class DirectEnd:
 
 
 class DirectLink(InstantLink):
-    """Both ends (simbridge.link_simulation.PairedLink)."""
+    """Both ends (simbridge.simulation.PairedLink)."""
 
     def __init__(self, settings: RobotSettings) -> None:
         self._controller = DirectController(settings.cycle_s)

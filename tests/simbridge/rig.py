@@ -15,7 +15,7 @@ from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from simbridge.contracts.simulation import Pose
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.world import World
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 from simbridge.worlds.geometry import Point
 from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
 from simbridge.worlds.world_loading import load_world

@@ -15,10 +15,9 @@ from hal.tap import Tap
 from simbridge.contracts.batch import BatchFactory
 from simbridge.contracts.batch_lesson import LessonFactory
 from simbridge.contracts.simulation import Pose, SimulationFactory
-from simbridge.link_simulation import LinkSimulationFactory
 from simbridge.robot.noise import Noise
 from simbridge.robot.world import World
-from simbridge.simulation import Kurt2SimulationFactory
+from simbridge.simulation import Kurt2SimulationFactory, LinkSimulationFactory
 from tests.patience import PATIENCE_S
 from tests.simbridge.direct_link import DirectLink
 from tests.simbridge.rig import ROBOT

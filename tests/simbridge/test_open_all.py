@@ -6,7 +6,7 @@ import pytest
 
 from config.settings import SettingsError
 from simbridge.contracts.batch import Start
-from simbridge.kurt2_simulation import Kurt2Simulation
+from simbridge.robot_simulation import Kurt2Simulation
 from tests.simbridge.batch.both_ways import FACTORY
 
 

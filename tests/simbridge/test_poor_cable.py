@@ -11,8 +11,8 @@ from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
-from simbridge.kurt2_simulation import Kurt2Simulation
-from simbridge.simulated_link import CanLine
+from simbridge.links import CanLine
+from simbridge.robot_simulation import Kurt2Simulation
 from tests.faults.cable import SOUND, Cable, CableFaults
 from tests.simbridge.rig import CODEC, ROBOT
 

@@ -8,8 +8,7 @@ import pytest
 
 from simbridge.contracts.simulation import SimulatedWorld
 from simbridge.contracts.world_refusal import WorldRefusal, WorldRefusedError
-from simbridge.realtime import RealtimeSimulation
-from simbridge.simulated_world import RealtimeWorld
+from simbridge.realtime import RealtimeSimulation, RealtimeWorld
 from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
 from tests.patience import PATIENCE_S
 from tests.simbridge.rig import ROBOT, Rig, room

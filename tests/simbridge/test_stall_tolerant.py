@@ -16,7 +16,7 @@ from kurt2rt.core.teaching.commands import Watch
 from kurt2rt.service.bus_names import SIMULATED
 from kurt2rt.service.open_robot import open_robot
 from simbridge.robot_simulation import StallTolerantKurt2
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 from simbridge.worlds.world_loading import load_world
 from tests.core.test_tick import Corridor
 from tests.core.test_tick_by_hand import watch

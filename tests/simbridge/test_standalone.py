@@ -11,8 +11,8 @@ from hal.codec import SIMULATED_HARDWARE_ID
 from hal.frame import Frame
 from hal.kurt2 import Kurt2
 from hal.robot import WheelSpeeds
+from simbridge.links import CanRobotEnd
 from simbridge.realtime import StandaloneRobot
-from simbridge.robot_end import CanRobotEnd
 from simbridge.worlds.world_loading import load_world
 from tests.patience import PATIENCE_S
 from tests.simbridge.rig import CODEC, ROBOT

@@ -10,7 +10,7 @@ from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.kurt2_settings import SpeedMode, load_kurt2
 from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 from tests.simbridge.rig import facing_wall, room
 
 _numbers = itertools.count()

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable, Iterator
 
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import StandReason
 from kurt2rt.core.decision.standing import (
     GO_IN_TERMINAL,
     GO_ON_PAGE,
+    ActiveStop,
     Standing,
+    StopReason,
     short_text,
     standing_headline,
     stop_text,

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from hal.robot import WheelSpeeds
-from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.decision.standing import STARTED
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.facts import ContactFacts, DecisionFacts, DoubtFacts, LessonFact, LevelFacts
 from kurt2rt.runs.explain.reasons import format_reasons, headline

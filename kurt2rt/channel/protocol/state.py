@@ -7,8 +7,7 @@ from pydantic import Field
 
 from kurt2rt.channel.protocol.limits import BOOT_BYTES
 from kurt2rt.channel.protocol.schema import Codec
-from kurt2rt.core.decision.active_stop import ActiveStop
-from kurt2rt.core.decision.standing import Standing
+from kurt2rt.core.decision.standing import ActiveStop, Standing
 from kurt2rt.core.message_fields import Bytes, Finite, Int, Line, Number, OneOf, Real, Share, Truth, UpTo, Word
 from kurt2rt.core.progress_meter import NO_PROGRESS, Progress
 from kurt2rt.core.rla.rla import BASIC, Phase

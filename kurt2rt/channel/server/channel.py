@@ -16,7 +16,7 @@ from kurt2rt.channel.server.reply import done, refusal, unsaved
 from kurt2rt.channel.server.request_handler import LONGEST_WAIT_S, RequestHandler
 from kurt2rt.channel.server.resources import Keys, RobotSite
 from kurt2rt.channel.server.state_builder import StateBuilder
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.perception.sensor_words import infrared_law
 from kurt2rt.core.rla.rla import Phase

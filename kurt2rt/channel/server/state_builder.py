@@ -7,8 +7,8 @@ from typing import TypedDict
 from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.channel.server.dependencies import ChannelDependencies
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause, MidDecision
+from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.rla.rla import ASK, BASIC, Rla
 from kurt2rt.core.teaching.question import FeatureDifference, ask, ask_in_doubt

@@ -17,7 +17,7 @@ from config.settings import Settings
 from hal.robot import HIGHEST_COUNTS, SensorReadings, WheelSpeeds
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
-from kurt2rt.core.critic.sides import critic_of
+from kurt2rt.core.critic.settings import critic_of
 from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_metric

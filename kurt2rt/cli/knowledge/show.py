@@ -11,7 +11,7 @@ from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import WIDE, KnowledgeFile, say
 from kurt2rt.cli.options import RobotName, TaskOfTheFile
 from kurt2rt.cli.tables import console_of
-from kurt2rt.core.critic.sides import critic_of
+from kurt2rt.core.critic.settings import critic_of
 from kurt2rt.core.outcome_text import neighbours_text
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.rla.contradiction import NEIGHBOURS, Contradiction, find_contradiction

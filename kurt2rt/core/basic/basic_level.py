@@ -10,8 +10,13 @@ from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.basic.doubt import DoubtMeter, DoubtWatch, NewObstacle
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.basic.held_action import HeldAction
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause, UnknownActionError, UnknownBehaviourError
+from kurt2rt.core.decision.decision import (
+    ActiveBehaviour,
+    Decision,
+    DecisionCause,
+    UnknownActionError,
+    UnknownBehaviourError,
+)
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.events import (

@@ -4,8 +4,7 @@ from behaviors.policies.policy import ReferencePolicy
 from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.basic.held_action import HeldAction
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause, UnknownActionError
+from kurt2rt.core.decision.decision import ActiveBehaviour, Decision, DecisionCause, UnknownActionError
 from kurt2rt.core.perception.perception import Situation
 
 

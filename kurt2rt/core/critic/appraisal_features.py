@@ -10,8 +10,7 @@ from hal.numerics import round_portable
 from hal.odometry import WheelMotion, WheelOdometry
 from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
-from kurt2rt.core.critic.settings import CriticSettings
-from kurt2rt.core.critic.sides import critic_of
+from kurt2rt.core.critic.settings import CriticSettings, critic_of
 
 
 class TurnMemory:

@@ -6,6 +6,7 @@ from typing import NamedTuple, Protocol
 from config.errors import TextCode, UserError
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
+from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.rla import BASIC
@@ -294,3 +295,23 @@ class UnknownActionError(UserError, ValueError):
 
 class UnknownBehaviourError(UserError, ValueError):
     """Knowledge with an RLA of a taught behaviour that the task lacks, so that it cannot be used."""
+
+
+class ActiveBehaviour:
+    """Selection of one of a task's taught behaviours, such as turn_left; only its RLAs compete.
+
+    Both levels share one: a teacher's `Pursue` or the mid level sets it, the basic level reads it. A task with a single
+    behaviour has the name "".
+    """
+
+    def __init__(self, behaviours: tuple[str, ...] = ("",)) -> None:
+        """`behaviours`: names to select from, the first active at the start; a single behaviour has no name."""
+        self.behaviours = behaviours
+        self.behaviour = behaviours[0]
+        """Name of the active one."""
+
+    def select(self, name: str) -> None:
+        """Make another behaviour active. Raises CommandRefusedError, which lists the names."""
+        if name not in self.behaviours:
+            raise CommandRefusedError(RefusalCode.NO_BEHAVIOUR, behaviour=name, known=self.behaviours)
+        self.behaviour = name

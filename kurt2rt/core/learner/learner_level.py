@@ -6,8 +6,7 @@ from numpy.typing import NDArray
 from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.basic.held_action import HeldAction
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import ActiveBehaviour, Decision, DecisionCause
 from kurt2rt.core.learner.learner import Label, Why
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.perception.perception import Situation

@@ -11,8 +11,8 @@ _BUILTIN = {
     "1-nn": f"{_ROOM}.neighbours:NearestNeighbour",
     "k-nn": f"{_ROOM}.neighbours:KNearest",
     "weighted-vote": f"{_ROOM}.neighbours:WeightedVote",
-    "svm": f"{_ROOM}.support_vectors:SupportVectors",
-    "tree": f"{_ROOM}.decision_tree:DecisionTree",
+    "svm": f"{_ROOM}.scikit:SupportVectors",
+    "tree": f"{_ROOM}.scikit:DecisionTree",
 }
 """Modules of the learners by their names; a module is imported with its learner only, because it may need an extra."""
 _METHODS = ("decide", "lesson", "snapshot", "restore")

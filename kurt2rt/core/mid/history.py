@@ -11,7 +11,7 @@ from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.decision.decision import NAMES, JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
-from kurt2rt.core.mid.situation import MidSituation, MidSituationSettings
+from kurt2rt.core.mid.settings import MidSituation, MidSituationSettings
 from kurt2rt.core.rla.condition import Metric
 
 _NONE = 0.0

@@ -6,10 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hal.robot import SensorReadings
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision, UnknownBehaviourError
-from kurt2rt.core.mid.settings import MidSettings
-from kurt2rt.core.mid.situation import MidSituation
+from kurt2rt.core.decision.decision import ActiveBehaviour, Decision, DecisionCause, MidDecision, UnknownBehaviourError
+from kurt2rt.core.mid.settings import MidSettings, MidSituation
 from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem

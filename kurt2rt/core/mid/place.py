@@ -13,7 +13,7 @@ from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.decision.decision import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
-from kurt2rt.core.mid.situation import MidSituation, MidSituationSettings
+from kurt2rt.core.mid.settings import MidSituation, MidSituationSettings
 from kurt2rt.core.rla.condition import Condition, Metric
 
 X, Y, EAST, NORTH, WALL_LEFT, WALL_RIGHT = range(6)

@@ -4,9 +4,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from kurt2rt.core.critic.agreement import Agreement
-from kurt2rt.core.critic.autonomy import Autonomy
+from kurt2rt.core.critic.autonomy import Autonomy, RollbackMonitor
 from kurt2rt.core.critic.critic import CriticState, Opinion
-from kurt2rt.core.critic.rollback import RollbackMonitor
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement

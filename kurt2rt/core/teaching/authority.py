@@ -1,11 +1,11 @@
-"""Who may command and drive: the teacher with control authority, manual drive, and stops."""
+"""Control authority: which teacher may command and drive, and the stops that teachers gave."""
 
 from collections import deque
 
 from behaviors.behaviour import Behaviour
 from behaviors.repertoire import Repertoire
 from hal.robot import SensorReadings, WheelSpeeds
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.teaching.commands import Drive, HoldAction

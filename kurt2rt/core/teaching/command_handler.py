@@ -7,8 +7,8 @@ from typing import TypeGuard
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.lesson_speed import LessonSpeed
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.outcome_text import event_error_text

@@ -1,7 +1,7 @@
 """Control: presses and other streams, who drives, running an action, the behaviour, and the session."""
 
 from behaviors.repertoire import Repertoire
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.rla.events import SessionBegun, SessionEnded, TeachingEvent
 from kurt2rt.core.rla.rla import Origin, Phase

@@ -6,8 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision
+from kurt2rt.core.decision.decision import ActiveBehaviour, Decision
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.planning.navigator import Navigator

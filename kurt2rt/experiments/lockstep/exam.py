@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from behaviors.metrics.task_metric import TaskMetric
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Level
+from kurt2rt.core.decision.decision import ActiveBehaviour, Level
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import Rla

@@ -2,7 +2,7 @@
 
 from enum import Enum
 
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import ActiveStop, StopReason
 
 
 class SensorStopAct(Enum):

@@ -8,8 +8,7 @@ from typing import Literal, Self, TypeVar
 
 from config.settings import Settings, SettingsError
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.critic.settings import CriticSettings
-from kurt2rt.core.critic.sides import critic_of
+from kurt2rt.core.critic.settings import CriticSettings, critic_of
 from kurt2rt.core.phase_settings import PhasesSettings
 from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated, RlaDeleted, TeachingEvent
 from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla

@@ -12,8 +12,7 @@ from behaviors.metrics.task_metric import TaskMetric
 from behaviors.repertoire import primitive_speeds
 from config.settings import Settings
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.critic.sides import critic_of
+from kurt2rt.core.critic.settings import critic_of, load_critic
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.events import ActionWithdrawn, LessonUndone, TeachingEvent

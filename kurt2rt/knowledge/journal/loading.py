@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.critic.sides import critic_of
+from kurt2rt.core.critic.settings import critic_of
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.rla.events import TeachingEvent

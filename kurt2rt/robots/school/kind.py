@@ -38,15 +38,14 @@ class SchoolKind:
     def simulations(self, settings: RobotSettings) -> SimulationFactory:
         """Return the factory of simulations over a line in memory."""
         from kurt2rt.robots.school.simulated import MemoryLine
-        from simbridge.link_simulation import LinkSimulationFactory
+        from simbridge.simulation import LinkSimulationFactory
 
         return LinkSimulationFactory(settings, open_link=MemoryLine)
 
     def serve(self, settings: RobotSettings, address: str) -> object:
         """Return a simulated robot's end of a pseudo-terminal at the path `address`. Raises hal.bus.BusError."""
         from kurt2rt.robots.school.simulated import SchoolElectronics
-        from simbridge.pty_port import PtyPort
-        from simbridge.robot_end import LinkRobotEnd
+        from simbridge.links import LinkRobotEnd, PtyPort
 
         port = PtyPort(address)
         return LinkRobotEnd(settings, port, lambda *_: SchoolElectronics(settings, port, time.monotonic))

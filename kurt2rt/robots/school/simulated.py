@@ -11,9 +11,9 @@ from kurt2rt.robots.school import lines
 from kurt2rt.robots.school.lines import Lines, difference
 from kurt2rt.robots.school.link import SchoolLink
 from simbridge.controller.controller import MOTORS_BRAKED, MotorCommands
+from simbridge.links import InstantLink
 from simbridge.robot.body import Body
 from simbridge.robot.wheels import Wheels
-from simbridge.simulated_link import InstantLink
 
 LINE_PERIOD_S = 0.02
 
@@ -92,7 +92,7 @@ class SchoolElectronics:
 class MemoryLine(InstantLink):
     """Serial line in memory between the runtime's driver and a simulated school robot.
 
-    It is a simbridge.link_simulation.PairedLink.
+    It is a simbridge.simulation.PairedLink.
     """
 
     def __init__(self, settings: RobotSettings) -> None:

@@ -33,7 +33,7 @@ class TurtlebotKind:
         """Return the factory of simulations over topics within this program."""
         from kurt2rt.robots.turtlebot.lidar import lidar_of
         from kurt2rt.robots.turtlebot.simulated import LocalLink
-        from simbridge.link_simulation import LinkSimulationFactory
+        from simbridge.simulation import LinkSimulationFactory
 
         return LinkSimulationFactory(settings, open_link=LocalLink, make_sensors=lidar_of)
 
@@ -46,7 +46,7 @@ class TurtlebotKind:
         from kurt2rt.robots.turtlebot.simulated import TurtlebotElectronics
         from kurt2rt.ros.inbox import MachineClock
         from kurt2rt.ros.session import ZenohSession
-        from simbridge.robot_end import LinkRobotEnd
+        from simbridge.links import LinkRobotEnd
 
         checked, clock = require_turtlebot(settings), MachineClock()
         session = ZenohSession(checked.ros, listen=[address])

@@ -16,9 +16,9 @@ from kurt2rt.ros.port import LocalTopics, RosPort
 from kurt2rt.ros.topic import topic_of
 from kurt2rt.ros.twist import PlaneTwist, Twists
 from simbridge.controller.controller import MOTORS_BRAKED, MotorCommands
+from simbridge.links import InstantLink
 from simbridge.robot.body import Body
 from simbridge.robot.wheels import Wheels
-from simbridge.simulated_link import InstantLink
 
 
 class SimulatedClock:
@@ -118,7 +118,7 @@ class TurtlebotElectronics:
 class LocalLink(InstantLink):
     """Topics in memory between the runtime's driver and a simulated base.
 
-    It is a simbridge.link_simulation.PairedLink.
+    It is a simbridge.simulation.PairedLink.
     """
 
     def __init__(self, settings: RobotSettings) -> None:

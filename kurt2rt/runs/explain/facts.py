@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from hal.robot import WheelSpeeds
-from kurt2rt.core.decision.active_stop import ActiveStop
 from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.decision.standing import ActiveStop
 from kurt2rt.core.message_fields import Int, Line, Number, OneOf, OrNotFinite, Share, Time, Title, Truth, UpTo
 from kurt2rt.core.rla.rla import MID
 

@@ -2,10 +2,10 @@
 
 import math
 
-from kurt2rt.core.decision.active_stop import ActiveStop
 from kurt2rt.core.decision.decision import DecisionCause, StandReason
 from kurt2rt.core.decision.standing import (
     DRIVES,
+    ActiveStop,
     Standing,
     reason_text,
     short_text,

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.decision.decision import Decision, DecisionCause, JunctionEvent, PlanStep
-from kurt2rt.core.expectations.surprise import Surprise
+from kurt2rt.core.expectations.expectations import Surprise
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.events import TeachingEvent

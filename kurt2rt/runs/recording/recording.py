@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from config.plugins import loaded_plugins
 from config.settings_files import SHIPPED_DIR
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.decision.active_stop import ActiveStop
+from kurt2rt.core.decision.standing import ActiveStop
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments

@@ -39,7 +39,7 @@ class RunHead:
     asked: bool
     """True if the robot could ask a teacher."""
     stopped: str
-    """Code of the initial stop (kurt2rt.core.decision.active_stop.StopReason); empty without one."""
+    """Code of the initial stop (kurt2rt.core.decision.standing.StopReason); empty without one."""
     behaviour: str
     """Active taught behaviour at the start."""
     fingerprints: dict[str, str]

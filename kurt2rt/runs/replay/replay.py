@@ -6,9 +6,8 @@ from typing import NamedTuple
 from config.settings import SettingsError
 from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.decision import UnknownActionError, UnknownBehaviourError
+from kurt2rt.core.decision.decision import ActiveBehaviour, UnknownActionError, UnknownBehaviourError
+from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.outcome import CommandRefusedError
 from kurt2rt.core.outcome_text import event_error_text, text_of
 from kurt2rt.core.rla.events import InvalidEventError, TeachingEvent

@@ -9,9 +9,8 @@ import anyio
 from hal.robot_settings import RobotSettings
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import ASKING
-from kurt2rt.core.decision.standing import stop_text
+from kurt2rt.core.decision.standing import ActiveStop, StopReason, stop_text
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import BeginSession, EndSession, Resume, SetLessonSpeed, SetPhase, Take

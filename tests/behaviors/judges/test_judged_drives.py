@@ -8,7 +8,7 @@ from behaviors.policies.policy import ReferencePolicy
 from behaviors.repertoire import load_repertoire
 from hal.robot_settings import load_robot_of
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
+from kurt2rt.core.decision.decision import ActiveBehaviour
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed

@@ -9,7 +9,7 @@ from behaviors.metrics.way import WaySettings
 from hal.robot import WheelSpeeds
 from kurt2rt.core.task_settings import load_task
 from simbridge.contracts.simulation import Pose
-from simbridge.kurt2_simulation import Kurt2Simulation
+from simbridge.robot_simulation import Kurt2Simulation
 from tests.experiments.helpers import STAGE, short_task, teachers_drive
 
 WANTED_M = 0.365

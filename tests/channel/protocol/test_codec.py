@@ -23,10 +23,9 @@ from kurt2rt.channel.protocol.codec import (
 )
 from kurt2rt.channel.protocol.requests import Request
 from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import StandReason
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.decision.standing import Standing
+from kurt2rt.core.decision.standing import ActiveStop, Standing, StopReason
 from kurt2rt.core.message_fields import (
     Bytes,
     BytesUpTo,

@@ -17,7 +17,7 @@ from kurt2rt.channel.protocol.codec import encode_request
 from kurt2rt.channel.protocol.requests import HelloRequest, LessonsRequest, StopRequest
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.server.datagram_filter import LONGEST_DATAGRAM, SocketAddress
-from kurt2rt.core.decision.active_stop import ActiveStop
+from kurt2rt.core.decision.standing import ActiveStop
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Drive, HoldAction, Resume, Take, Teach
 from kurt2rt.teacher import TeacherClient

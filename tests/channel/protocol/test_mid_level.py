@@ -8,7 +8,7 @@ from kurt2rt.channel.protocol.state import State, SurpriseState
 from kurt2rt.channel.server.reply import ReplyStatus
 from kurt2rt.core.decision.decision import GoalStatus, PlanStep
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.expectations.surprise import Surprise
+from kurt2rt.core.expectations.expectations import Surprise
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import BeAt, NameSituation, Seek, StopSeeking, Teach, Undo

@@ -31,8 +31,8 @@ from kurt2rt.channel.protocol.simulation import EXAM, SIMULATION, ExamStatus
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.channel.server.request_handler import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.message_fields import checks_of
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.teaching.commands import (

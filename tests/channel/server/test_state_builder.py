@@ -8,7 +8,7 @@ from kurt2rt.channel.protocol.codec import decode_state, encode_state
 from kurt2rt.channel.protocol.health import Trouble
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.rla.rla import ASK, Phase
 from kurt2rt.core.teaching.commands import BeginSession, EndSession, Resume, Reward, SetPhase
 from tests.channel.channel_fixture import STAMP, ChannelFixture

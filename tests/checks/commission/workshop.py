@@ -20,7 +20,7 @@ from kurt2rt.checks.commission.progress import Progress, StepOutcome
 from kurt2rt.checks.commission.step import CommissionStep
 from kurt2rt.checks.commission.test_stand import TestStand
 from kurt2rt.platform.clock import LockstepClock
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 from simbridge.worlds.obstacle_settings import RoundObstacleSettings
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
 from tests.checks.commission.wired_end import WiredEnd, Wiring

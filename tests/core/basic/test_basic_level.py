@@ -5,8 +5,7 @@ import pytest
 from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import DecisionCause, UnknownBehaviourError
+from kurt2rt.core.decision.decision import ActiveBehaviour, DecisionCause, UnknownBehaviourError
 from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.helpers import MINIMUM_TICKS, RADIUS, Counted, SmallLevel, sensed, situation

@@ -7,8 +7,7 @@ from behaviors.motor_primitive import MotorPrimitive
 from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.doubt import DoubtMeter, DoubtSettings, actions_ahead
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import ActiveBehaviour, Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem

@@ -9,8 +9,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.doubt import DoubtMeter, DoubtSettings, actions_ahead, set_points
 from kurt2rt.core.basic.obstacle_memory import ContactSettings, ObstacleMemory
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision
+from kurt2rt.core.decision.decision import ActiveBehaviour, Decision
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem

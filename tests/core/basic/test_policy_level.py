@@ -2,8 +2,7 @@
 
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import ActiveBehaviour, Decision, DecisionCause
 from tests.core.helpers import MINIMUM_TICKS, Counted, sensed, situation
 
 

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.core.critic.rollback import RollbackMonitor
+from kurt2rt.core.critic.autonomy import RollbackMonitor
 from kurt2rt.core.critic.settings import RollbackSettings
 from kurt2rt.core.rla.events import (
     ActionReplaced,

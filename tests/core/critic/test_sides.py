@@ -9,8 +9,7 @@ from config.settings import SettingsError
 from hal.robot import SensorReadings
 from hal.robot_settings import load_robot
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
-from kurt2rt.core.critic.settings import CriticSettings, load_critic
-from kurt2rt.core.critic.sides import critic_of
+from kurt2rt.core.critic.settings import CriticSettings, critic_of, load_critic
 
 
 @pytest.mark.parametrize("robot", ["school", "turtlebot"])

@@ -8,15 +8,16 @@ from hal.guard_reason import Effect, GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.channel.protocol.codec import decode_state, encode_state
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import BY_KNOWLEDGE, Decision, DecisionCause, StandReason
 from kurt2rt.core.decision.standing import (
     ASKS_AFTER_TICKS,
     DRIVES,
     GO_IN_TERMINAL,
     GO_ON_PAGE,
+    ActiveStop,
     Standing,
     StandingWatch,
+    StopReason,
     question_text,
     reason_text,
     short_text,

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from kurt2rt.core.expectations.expectations import End, Expectations
-from kurt2rt.core.expectations.surprise import Surprise
+from kurt2rt.core.expectations.expectations import End, Expectations, Surprise
 from kurt2rt.core.rla.condition import Metric, Space
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import BASIC, MID

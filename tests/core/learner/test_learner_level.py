@@ -1,8 +1,7 @@
 import numpy as np
 
 from hal.robot import STANDSTILL
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import ActiveBehaviour, Decision, DecisionCause
 from kurt2rt.core.learner.learner import Why
 from kurt2rt.core.learner.learner_level import LearnerLevel
 from kurt2rt.core.learner.learner_team import LearnerTeam

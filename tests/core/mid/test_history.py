@@ -2,8 +2,7 @@
 
 import math
 
-from kurt2rt.core.mid.settings import MidSettings, load_mid_level
-from kurt2rt.core.mid.situation import MidSituation
+from kurt2rt.core.mid.settings import MidSettings, MidSituation, load_mid_level
 from tests.core.mid.walk import OPEN_M, ROBOT, STREET_M, sensed
 
 

@@ -12,12 +12,12 @@ from hal.kurt2_settings import Kurt2Settings
 from hal.robot import SensorReadings
 from hal.robot_settings import InfraredSettings
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
+from kurt2rt.core.decision.decision import ActiveBehaviour
 from kurt2rt.core.mid.junction_detector import JunctionDetector
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.task_settings import load_task
-from simbridge.kurt2_simulation import Kurt2Simulation
+from simbridge.robot_simulation import Kurt2Simulation
 from tests.core.helpers import situation
 from tests.core.mid.walk import ROBOT
 

@@ -9,14 +9,14 @@ import pytest
 from behaviors.repertoire import load_repertoire
 from hal.kurt2_settings import load_kurt2
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
+from kurt2rt.core.decision.decision import ActiveBehaviour
 from kurt2rt.core.mid.place import EAST, NORTH, WALL_LEFT, WALL_RIGHT, PlaceSituation, X, Y
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.task_settings import load_task
 from simbridge.contracts.simulation import Pose
-from simbridge.kurt2_simulation import Kurt2Simulation
+from simbridge.robot_simulation import Kurt2Simulation
 
 ROBOT = load_kurt2()
 STREETS = load_task("streets")

@@ -11,8 +11,7 @@ from kurt2rt.core.critic.settings import (
     RollbackSettings,
     SignalEverySettings,
 )
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import ActiveBehaviour, Decision, DecisionCause
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching

@@ -13,7 +13,7 @@ from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, FaultySensor
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.study.exam_tables import exam_tables
-from simbridge.kurt2_simulation import Kurt2Simulation
+from simbridge.robot_simulation import Kurt2Simulation
 from simbridge.simulation import Kurt2SimulationFactory
 from tests.experiments.helpers import ROBOT, short_task
 

@@ -20,7 +20,7 @@ from hal.bus import CONTROL_ID, open_bus
 from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.teaching.commands import Resume, Take, Teach
 from kurt2rt.teacher import TeacherClient
 from tests.cli.helpers import Running, running

@@ -13,7 +13,7 @@ from hal.bus import CanBus, FramePort, open_bus
 from hal.frame import Frame
 from hal.kurt2_settings import load_kurt2
 from simbridge.realtime import RealtimeSimulation
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 from simbridge.worlds.world_loading import load_world
 from tests.hal.helpers import CODEC, INFRARED_FRAMES
 

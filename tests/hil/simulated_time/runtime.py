@@ -16,8 +16,7 @@ from hal.kurt2 import Kurt2
 from hal.kurt2_settings import load_kurt2
 from hal.robot import SensorReadings
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import ActiveBehaviour, Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick_record import TickRecord

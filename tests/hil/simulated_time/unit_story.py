@@ -17,8 +17,7 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
-from kurt2rt.core.decision.active_stop import STARTED
-from kurt2rt.core.decision.standing import stop_text
+from kurt2rt.core.decision.standing import STARTED, stop_text
 from kurt2rt.core.teaching.commands import Resume, Take
 from kurt2rt.platform.realtime_priority import UNIT_PRIORITY
 from kurt2rt.teacher import TeacherClient

@@ -8,7 +8,7 @@ from hal.linked_robot import LinkedRobot
 from hal.robot import GuardResult, WheelSpeeds
 from hal.robot_settings import RobotSettings, load_robot
 from kurt2rt.robots.school.simulated import MemoryLine, SchoolElectronics
-from simbridge.pty_port import PtyPort
+from simbridge.links import PtyPort
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.worlds.world_loading import load_world

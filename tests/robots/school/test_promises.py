@@ -14,18 +14,17 @@ from kurt2rt.robots.school.lines import BIT_RATE_BIT_S
 from kurt2rt.robots.school.link import SchoolLink
 from kurt2rt.robots.school.simulated import SchoolElectronics
 from simbridge.contracts.simulation import SimulationFactory
-from simbridge.link_simulation import LinkSimulationFactory
-from simbridge.pty_port import PtyPort
+from simbridge.links import InstantLink, PtyPort
 from simbridge.robot.body import Body
 from simbridge.robot.wheels import Wheels
-from simbridge.simulated_link import InstantLink
+from simbridge.simulation import LinkSimulationFactory
 
 DELIVERY_S = 0.001
 """Pause in which the kernel's own thread delivers the bytes of a cycle."""
 
 
 class PtyLine(InstantLink):
-    """Serial port and pseudo-terminal in simulated time (simbridge.link_simulation.PairedLink)."""
+    """Serial port and pseudo-terminal in simulated time (simbridge.simulation.PairedLink)."""
 
     def __init__(self, settings: RobotSettings) -> None:
         self._settings = settings

@@ -12,7 +12,7 @@ from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult
 from kurt2rt.robots.school.kind import SCHOOL
 from simbridge.contracts.robot_kind import kind_of
-from simbridge.pty_port import PtyPort
+from simbridge.links import PtyPort
 from tests.patience import PATIENCE_S
 from tests.robots.school.rig import FORWARD, SETTINGS, PtyRobot
 

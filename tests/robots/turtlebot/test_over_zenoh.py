@@ -12,8 +12,8 @@ from hal.guard_reason import GuardReason
 from hal.guarded_robot import GuardedRobot
 from kurt2rt.robots.turtlebot.kind import TURTLEBOT
 from kurt2rt.robots.turtlebot.settings import TurtlebotSettings
+from simbridge.links import RobotEnd
 from simbridge.realtime import StandaloneRobot
-from simbridge.robot_end import RobotEnd
 from simbridge.worlds.world_loading import load_world
 from tests.robots.turtlebot.rig import FORWARD, SETTINGS
 from tests.ros.helpers import free_locator, wait_for

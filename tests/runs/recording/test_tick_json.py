@@ -10,7 +10,7 @@ from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.decision.decision import DecisionCause, GoalStatus, JunctionEvent, PlanStep
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.expectations.surprise import Surprise
+from kurt2rt.core.expectations.expectations import Surprise
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import LessonUndone, RlaCreated, RlaRewarded
 from kurt2rt.core.rla.rla import Origin, Phase, Rla

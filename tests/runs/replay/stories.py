@@ -16,9 +16,9 @@ from mcap.writer import CompressionType, Writer
 
 from hal.kurt2_settings import load_kurt2
 from hal.robot import Robot
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.active_stop import STARTED, ActiveStop
+from kurt2rt.core.decision.decision import ActiveBehaviour
 from kurt2rt.core.decision.goal import NamedGoal
+from kurt2rt.core.decision.standing import STARTED, ActiveStop
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.rla.statistics import Statistics
@@ -50,7 +50,7 @@ from kurt2rt.runs.recording.segment_reader import SegmentReader
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, view_of_tick
 from kurt2rt.teacher.scripted.build import build_teacher
-from simbridge.kurt2_simulation import Kurt2Simulation
+from simbridge.robot_simulation import Kurt2Simulation
 from tests.runs.replay.stored_runs import STORED
 
 NAME = "scripted teacher"

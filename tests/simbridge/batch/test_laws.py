@@ -23,7 +23,7 @@ from simbridge.contracts.batch import PolicyMind, TabledPolicy
 from simbridge.contracts.simulation import Pose
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.wheels import Wheels
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 from tests.hal.helpers import guard_on
 from tests.simbridge.batch.both_ways import FACTORY, ROBOT
 

@@ -6,7 +6,7 @@ import pytest
 from config.settings import SettingsError
 from hal.control import Mode, RawControl, RawSide, SpeedControl, SystemControl
 from simbridge.contracts.simulation import Pose
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 from tests.simbridge.rig import ROBOT, STAND, Rig, room
 
 FORWARD = SpeedControl(Mode.SPEED_CM, 30, 30)

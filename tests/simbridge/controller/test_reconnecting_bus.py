@@ -8,7 +8,7 @@ from hal.bus import BusError, CanBus, CanInterface, open_bus
 from hal.control import Mode, SpeedControl, control_frame
 from hal.in_process_bus import InProcessBus
 from simbridge.controller.reconnecting_bus import ReconnectingBus
-from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import SimulatedKurt2
 from tests.simbridge.rig import ROBOT, room
 
 SLOWLY = control_frame(SpeedControl(Mode.SPEED_CM, 20, 20))

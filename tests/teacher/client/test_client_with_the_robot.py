@@ -21,7 +21,7 @@ from kurt2rt.service.post_tick import ProgramConsole
 from kurt2rt.service.serve import ChannelOptions, ServeOptions, serve
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import RefusedError
-from simbridge.simulated_world import RealtimeWorld
+from simbridge.realtime import RealtimeWorld
 from simbridge.worlds.world_loading import load_world
 from tests.channel.lossy_link import LossyLink, Weather
 from tests.patience import PATIENCE_S

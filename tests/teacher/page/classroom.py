@@ -26,9 +26,8 @@ from kurt2rt.service.systemd.notifier import Notifier
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.access import Access
 from kurt2rt.teacher.page.server import listen, run_page
-from simbridge.kurt2_simulation import Kurt2Simulation
-from simbridge.realtime import RealtimeSimulation
-from simbridge.simulated_world import RealtimeWorld
+from simbridge.realtime import RealtimeSimulation, RealtimeWorld
+from simbridge.robot_simulation import Kurt2Simulation
 from simbridge.worlds.world_loading import load_world
 from tests.channel.jumping_loop import LoopClock
 from tests.channel.lossy_link import LossyLink

@@ -10,8 +10,8 @@ import anyio.lowlevel
 import pytest
 
 from kurt2rt.channel.protocol.requests import CommandRequest, NextRunRequest, PlaceRequest
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.goal import NamedGoal
+from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.outcome_text import Surface, text_of
 from kurt2rt.core.rla.rla import Phase

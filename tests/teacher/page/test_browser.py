@@ -3,7 +3,7 @@
 import itertools
 from functools import partial
 
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.teaching.commands import Resume, Undo
 from tests.teacher.page.classroom import Classroom
 from tests.teacher.page.phone import LAPTOP, PORTRAIT, Phone

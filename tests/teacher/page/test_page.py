@@ -15,10 +15,9 @@ from kurt2rt.channel.protocol.hello import AppraisalName, MidIntroduction
 from kurt2rt.channel.protocol.lesson_list import Contradicting
 from kurt2rt.channel.protocol.simulation import ExamStatus, WorldVerdict
 from kurt2rt.channel.protocol.state import HoldState, ShownState
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import StandReason
 from kurt2rt.core.decision.goal import NamedGoal
-from kurt2rt.core.decision.standing import Standing
+from kurt2rt.core.decision.standing import ActiveStop, Standing, StopReason
 from kurt2rt.core.perception.sensor_words import infrared_law, words_for
 from kurt2rt.core.progress_meter import Progress
 from kurt2rt.core.teaching.question import FeatureDifference

@@ -10,7 +10,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.requests import HelloRequest, PlaceRequest, StopRequest
 from kurt2rt.channel.security.pairing import local_pairing
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.rla import AUTO, Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by

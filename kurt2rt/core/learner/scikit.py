@@ -1,9 +1,10 @@
-"""Support vector machine with a margin gate, as in confidence-based autonomy (Chernova, Veloso 2009)."""
+"""Learners of scikit-learn, refitted to all labels after each lesson: support vectors, and a decision tree."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from sklearn.svm import SVC
+from sklearn.tree import DecisionTreeClassifier
 
 from kurt2rt.core.learner.label_learner import LabelLearner, Points
 
@@ -37,3 +38,15 @@ class SupportVectors(LabelLearner):
         if best - runner_up < self.gate(0.3):
             return None
         return str(self._machine.classes_[int(values.argmax())])
+
+
+class DecisionTree(LabelLearner):
+    """Tree of scikit-learn's defaults; its leaves are pure, so it asks before its first lesson and never again."""
+
+    def fit(self, points: Points, actions: Sequence[str]) -> None:
+        """Fit the tree to points (n, d) and their actions."""
+        self._tree = DecisionTreeClassifier(random_state=self.setting.seed).fit(points, list(actions))
+
+    def choose(self, point: Points, *, taught: bool) -> str | None:  # noqa: ARG002 - it never asks
+        """Return the action of the leaf of a point (d,)."""
+        return str(self._tree.predict(point[None])[0])
