@@ -174,21 +174,6 @@ async def until_it_drives(we: TeacherClient, action: str = "forward") -> int:
     raise AssertionError("the client ended")
 
 
-@asynccontextmanager
-async def kept_driving(we: TeacherClient, action: str) -> AsyncIterator[None]:
-    """Resume the robot meanwhile each time it stopped itself."""
-
-    async def keep() -> None:
-        while True:
-            await until_it_drives(we, action)
-            await state_where(we, lambda state: state.stopped is not None or state.cause == "unknown")
-
-    async with anyio.create_task_group() as tasks:
-        tasks.start_soon(keep)
-        yield
-        tasks.cancel_scope.cancel()
-
-
 async def _cycles_to_rest(seen: Onlooker) -> int:
     """Return the controller cycles from the last CONTROL frame of a killed program until the wheels stand."""
     turned: list[bool] = []

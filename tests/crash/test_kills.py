@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 from tests.crash.kill_story import KillStory
-from tests.crash.kills import OF_A_STORY, kills_of_shard, stories
 
 KILLS_OF_A_SHARD = 50
 
@@ -28,12 +27,3 @@ async def test_it_is_so_in_two_hundred_kills(tmp_path: Path, shard: int) -> None
     assert tally.kills == KILLS_OF_A_SHARD
     assert tally.stored >= tally.acknowledged > KILLS_OF_A_SHARD // 2
     assert tally.driving > KILLS_OF_A_SHARD // 5
-
-
-def test_shards_are_all_kills_together() -> None:
-    assert sum(kills_of_shard(10_000, shard, 7) for shard in range(1, 8)) == 10_000
-
-
-def test_no_two_stories_have_the_same_seed() -> None:
-    told = [*stories(0, 120), *stories(120, 80)]
-    assert told == [(0, OF_A_STORY), (50, OF_A_STORY), (100, 20), (120, OF_A_STORY), (170, 30)]

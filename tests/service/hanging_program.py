@@ -9,15 +9,12 @@ import pytest
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.server.endpoint import Endpoint
 from kurt2rt.cli.main import main
-from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.runs.recording.run_files import RunFiles
 from kurt2rt.service import program_startup
 from kurt2rt.service.post_tick import PostTick
 from tests.patient_shutdown import extend_deadlines
 
-_ROUND = PostTick.__call__
-_DRIVES_M_S = 0.1
 _WAIT_S = 0.7
 """Time for a part that hangs to end: the real one; what comes after it has longer than in truth."""
 
@@ -25,12 +22,6 @@ _WAIT_S = 0.7
 def _hang(*_: Any, **__: Any) -> Never:
     while True:
         threading.Event().wait()
-
-
-def _hang_while_it_drives(rounds: PostTick, record: TickRecord) -> None:
-    if max(map(abs, record.guard_result.wheel_speeds)) > _DRIVES_M_S:
-        _hang()
-    _ROUND(rounds, record)
 
 
 async def _hang_in_the_loop(*_: Any) -> None:
@@ -45,7 +36,6 @@ def _let_hang(thing: str) -> None:
         "keys": (Teachers, "close", _hang),
         "network": (Endpoint, "close", _hang_in_the_loop),
         "loop": (PostTick, "save_statistics", _hang),
-        "drive": (PostTick, "__call__", _hang_while_it_drives),
     }
     owner, name, replacement = hangs[thing]
     assert hasattr(owner, name)  # a name that moved would let the program run on

@@ -8,9 +8,8 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.experiments.paper.settings import Extent, load_paper
-from kurt2rt.experiments.paper.study import PaperExtent, PaperStudy, make_plan, read_study
+from kurt2rt.experiments.paper.study import PaperStudy, make_plan, read_study
 from kurt2rt.experiments.paper.tables import SUCCESS_NOTE, reasons_not_to_judge, tell
-from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.study.table import Told
 from tests.experiments.helpers import STAGE
 from tests.experiments.study.here import carry_out, parts_in
@@ -33,27 +32,14 @@ class Tiny:
     """Report."""
 
 
-def tiny_plan(folder: Path, *tasks: str) -> StudyPlan[PaperExtent]:
-    return make_plan(load_paper(), EXTENT, (100,), ("shipped", "plain"), parts_in(folder), tasks=tasks)
-
-
 @pytest.fixture(scope="module")
 def tiny(tmp_path_factory: pytest.TempPathFactory) -> Tiny:
     folder = tmp_path_factory.mktemp("paper")
-    plan = carry_out(tiny_plan(folder, "wall_following", "eight"), folder)
+    tasks = ("wall_following", "eight")
+    plan = make_plan(load_paper(), EXTENT, (100,), ("shipped", "plain"), parts_in(folder), tasks=tasks)
+    carry_out(plan, folder)
     told = tell(plan, STAGE, COMMAND)
     return Tiny(folder, read_study(plan), told, told.files["report"].read_text(encoding="utf-8"))
-
-
-def test_interrupted_run_completes_to_equal_bytes(tiny: Tiny, tmp_path: Path) -> None:
-    plan = tiny_plan(tmp_path, "eight")
-    first, second = (job.file for job in plan.jobs)
-    (tmp_path / first).parent.mkdir(parents=True)
-    (tmp_path / first).write_bytes((tiny.folder / first).read_bytes())
-    stamp_ns = (tmp_path / first).stat().st_mtime_ns
-    carry_out(plan, tmp_path)
-    assert (tmp_path / first).stat().st_mtime_ns == stamp_ns
-    assert (tmp_path / second).read_bytes() == (tiny.folder / second).read_bytes()
 
 
 def test_the_report_holds_every_figure_and_every_table(tiny: Tiny) -> None:

@@ -46,11 +46,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     order = Order(
         command=tuple(command),
         interfaces=tuple(options.interface or ["vcan0"]),
-        echo=not options.no_echo,
         limit_s=options.limit,
         shared=tuple(options.share),
-        memory_mib=options.memory,
-        cpu=options.cpu,
         kernel=options.kernel,
         kernel_arguments=tuple(options.kernel_argument),
         systemd=options.systemd,
@@ -99,10 +96,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--systemd", action="store_true", help="uml, with systemd as its first process, which runs COMMAND as a unit")
     add("--limit", type=_positive, default=900, metavar="S", help="seconds for COMMAND (%(default)s)")
     add("--interface", action="append", type=_interface, metavar="NAME", help="to bring up, again for more (vcan0)")
-    add("--no-echo", action="store_true", help="vcan with its short cut past the queue to local listeners")
     add("--share", action="append", type=_directory, default=[], metavar="DIR", help="that COMMAND may write to (uml)")
-    add("--memory", type=_positive, default=1024, metavar="MIB", help="memory of a uml machine (%(default)s)")
-    add("--cpu", type=int, metavar="N", help="processor for a uml machine (the least busy one)")
     add("--kernel", type=Path, metavar="FILE", help="a uml kernel with CAN built in (Debian's, with modules)")
     add("--kernel-argument", action="append", default=[], metavar="WORD", help="again for more (uml)")
     add("command", nargs=argparse.REMAINDER, metavar="COMMAND")

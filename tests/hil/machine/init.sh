@@ -3,7 +3,7 @@
 # Makes a root that can be written to and thrown away, loads the modules, and lets inside.py do the rest; it becomes
 # systemd first, whose unit that is, where the order says so.
 # Beside this file, in the control directory: shared (directories to write to, one a line), start (a shell script that
-# runs inside.py), module_arguments, systemd (a link to it, or nothing). It says what went wrong on the console, which is
+# runs inside.py), systemd (a link to it, or nothing). It says what went wrong on the console, which is
 # the kernel log of the run.
 control=${0%/*}
 PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
@@ -53,7 +53,7 @@ mount -t hostfs -o "$control" none $root/run/machine || bad "cannot share $contr
 cd $root && pivot_root . . && umount -l . && cd / || bad "cannot change the root"
 hostname localhost
 if [ -d "$modules" ]; then
-    modprobe can-raw && modprobe vcan $(cat /run/machine/module_arguments) || bad "cannot load the CAN modules"
+    modprobe can-raw && modprobe vcan echo=1 || bad "cannot load the CAN modules"
 fi
 if [ -e /run/machine/systemd ]; then
     # Nothing of what the outer machine starts, mounts or waits for.

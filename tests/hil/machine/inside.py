@@ -1,7 +1,7 @@
 """The part that runs inside the machine: brings the interfaces up, runs the command, tells its exit status.
 
 A program by itself, with nothing but the standard library: `python -I inside.py TASK.json`. The task holds `command`,
-`environment`, `directory`, `interfaces`, `echo`, `limit_s`; `prefix`, words before the command; `own_sys`, true when
+`environment`, `directory`, `interfaces`, `limit_s`; `prefix`, words before the command; `own_sys`, true when
 /sys still shows the interfaces of another network namespace; `stdout`, `stderr`, files to append to, or null for this
 program's own; `status`, the file for the exit status, or null for this program's own.
 """
@@ -24,15 +24,20 @@ _IFF_ECHO = 0x40000
 _WATCHED = {signal.SIGCHLD, signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
 
 
-def bring_up(interfaces: list[str], *, echo: bool, own_sys: bool) -> None:
-    """Make the interfaces. Raises subprocess.CalledProcessError, OSError; RuntimeError when vcan has no echo."""
+def bring_up(interfaces: list[str], *, own_sys: bool) -> None:
+    """Make the interfaces. Raises subprocess.CalledProcessError, OSError; RuntimeError when vcan has no echo.
+
+    With echo, frames come back to this machine's own listeners by the driver, after the queue discipline, as with an
+    adapter. Without it they take a short cut: `tc` delays nothing, and a sender hears at once what the bus has yet to
+    carry.
+    """
     if own_sys:
         _do("mount", "-t", "sysfs", "sysfs", "/sys")
     _do("ip", "link", "set", "lo", "up")
     for name in interfaces:
         _do("ip", "link", "add", "dev", name, "type", "vcan")
         _do("ip", "link", "set", name, "up")
-        if echo and not int(Path(f"/sys/class/net/{name}/flags").read_text(encoding="ascii"), 16) & _IFF_ECHO:
+        if not int(Path(f"/sys/class/net/{name}/flags").read_text(encoding="ascii"), 16) & _IFF_ECHO:
             raise RuntimeError("the module vcan is loaded without echo=1: modprobe -r vcan && modprobe vcan echo=1")
 
 
@@ -93,7 +98,7 @@ def main() -> None:
     """Do the task."""
     task = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))
     try:
-        bring_up(task["interfaces"], echo=task["echo"], own_sys=task["own_sys"])
+        bring_up(task["interfaces"], own_sys=task["own_sys"])
     except (OSError, RuntimeError, subprocess.CalledProcessError) as error:
         print(f"machine: {getattr(error, 'stderr', None) or error}".strip(), file=sys.stderr, flush=True)
         sys.exit(NO_MACHINE)

@@ -59,7 +59,7 @@ def find_native(order: Order) -> Native:
     """Return the first way that works here for an order. Raises MachineError with the reasons if none does."""
     if program("ip") is None or program("unshare") is None:
         raise MachineError("no native machine: ip or unshare is missing; Debian packages: iproute2 util-linux")
-    _load_vcan(order)
+    _load_vcan()
     complaints = []
     for native in _ways():
         why_not = native.try_out(order)
@@ -83,12 +83,11 @@ def _ways() -> Iterator[Native]:
         )
 
 
-def _load_vcan(order: Order) -> None:
-    """Load the module as the order wants it, where that is possible at all; the trial shows whether it helped."""
+def _load_vcan() -> None:
+    """Load the module with echo, where that is possible at all; the trial shows whether it helped."""
     if program("modprobe") is None or (as_root() and program("sudo") is None):
         return
-    arguments = ["echo=1"] if order.echo else []
-    words = [*as_root(), "modprobe", "vcan", *arguments]
+    words = [*as_root(), "modprobe", "vcan", "echo=1"]
     subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, check=False)
 
 

@@ -35,7 +35,6 @@ def write_task(
         "environment": {**os.environ, "PATH": SEARCH_PATH},
         "directory": str(Path.cwd()),
         "interfaces": order.interfaces,
-        "echo": order.echo,
         "limit_s": order.limit_s,
         "prefix": list(prefix),
         "own_sys": own_sys,

@@ -27,6 +27,8 @@ _DEBIAN_KERNEL = "linux.uml"
 _SYSTEMD = "/lib/systemd/systemd"
 _CONTROL_INSIDE = "/run/machine"
 """Path of the control directory inside the machine."""
+_MEMORY_MIB = 1024
+"""Memory of a machine; it takes what is touched."""
 _SPARE_S = 30.0
 """Extra time in this machine's time: booting, and clocks that differ."""
 _PATIENCE_S = 5.0
@@ -100,7 +102,6 @@ class Uml:
         )
         directories = [Path.cwd(), *(each.resolve() for each in self._order.shared)]
         (control / "shared").write_text("".join(f"{each}\n" for each in directories), encoding="utf-8")
-        (control / "module_arguments").write_text("echo=1" if self._order.echo else "", encoding="ascii")
         if self._order.systemd:
             (control / "systemd").symlink_to(_SYSTEMD)
         shutil.copy(INSIDE, control)
@@ -112,13 +113,12 @@ class Uml:
     @contextlib.contextmanager
     def _booted(self, control: Path, log: Path) -> Iterator["subprocess.Popen[bytes]"]:
         """Run the machine as a process; end it with all its helper processes in every case."""
-        cpu = least_busy() if self._order.cpu is None else self._order.cpu
         words = [
             # Should this program be killed, the machine ends, too.
-            *("setpriv", "--pdeathsig", "TERM", "taskset", "-c", str(cpu)),
-            *(self._kernel, f"mem={self._order.memory_mib}M", "rootfstype=hostfs", "rootflags=/", "ro"),
+            *("setpriv", "--pdeathsig", "TERM", "taskset", "-c", str(least_busy())),
+            *(self._kernel, f"mem={_MEMORY_MIB}M", "rootfstype=hostfs", "rootflags=/", "ro"),
             *("quiet", "panic=-1", "con=null", "con0=null,fd:1", f"uml_dir={control}/uml/", "umid=machine"),
-            *(f"init={control}/init", *(["vcan.echo=1"] if self._order.echo else []), *self._order.kernel_arguments),
+            *(f"init={control}/init", "vcan.echo=1", *self._order.kernel_arguments),
         ]
         environment = {**os.environ, "PATH": SEARCH_PATH, "TMPDIR": str(self._memory_folder(control))}
         if self._preloaded is not None:
@@ -151,7 +151,7 @@ class Uml:
         """
         with contextlib.suppress(OSError):
             shared = os.statvfs(_SHARED_MEMORY)
-            roomy = shared.f_bavail * shared.f_frsize > self._order.memory_mib << 20
+            roomy = shared.f_bavail * shared.f_frsize > _MEMORY_MIB << 20
             if roomy and not shared.f_flag & os.ST_NOEXEC and os.access(_SHARED_MEMORY, os.W_OK):
                 return _SHARED_MEMORY
         return control

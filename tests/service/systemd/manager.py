@@ -37,16 +37,6 @@ class Manager:
             lines += self._socket.recv(4096).decode().splitlines()
         return lines
 
-    def hears(self, line: str, within_s: float) -> bool:
-        """Return whether the line comes before the messages cease for that time."""
-        self._socket.settimeout(within_s)
-        try:
-            while line not in self._socket.recv(4096).decode().splitlines():
-                pass
-        except TimeoutError:
-            return False
-        return True
-
     def close(self) -> None:
         self._socket.close()
 
