@@ -2,11 +2,9 @@
 
 import re
 from collections.abc import Iterator
-from string import Formatter
 
-from kurt2rt.teacher.page import texts
 from kurt2rt.teacher.page.app import STATIC
-from kurt2rt.teacher.page.texts import PageNotice
+from kurt2rt.teacher.page.texts import PageNotice, text_of
 
 SAMPLES = {"place": "127.0.0.1:5683", "most_mb": 64, "name": "a.zip", "size": 70_000_000, "most": 64_000_000}
 
@@ -14,8 +12,7 @@ SAMPLES = {"place": "127.0.0.1:5683", "most_mb": 64, "name": "a.zip", "size": 70
 def notices() -> Iterator[tuple[str, str]]:
     """Yield the text of each notice of the page's server."""
     for notice in PageNotice:
-        fields = [name for _, name, _, _ in Formatter().parse(texts._TEXTS[notice]) if name]
-        yield notice, texts.text_of(notice, **{name: SAMPLES[name] for name in fields})
+        yield notice, text_of(notice, **{name: SAMPLES[name] for name in notice.fields})
 
 
 def sentences() -> Iterator[tuple[str, str]]:

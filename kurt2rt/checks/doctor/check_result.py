@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Self
+
+from config.errors import TextCode
 
 _ANOTHER_FOLDER = "give a folder on a local disk that you may write, with --folder"
 _LIMITS_FILE = "/etc/security/limits.d/kurt2rt.conf"
@@ -22,111 +23,109 @@ class CheckStatus(StrEnum):
     MISSING = "missing"
 
 
-class FindingCode(StrEnum):
-    """Code of what a check of `kurt2rt doctor` found, with its texts and remedy.
-
-    The fields of the finding are in braces.
-    """
+class FindingCode(TextCode):
+    """Code of what a check of `kurt2rt doctor` found, with its texts; its remedy is mostly a command to copy."""
 
     subject: str
-    found: str
-    what_to_do: str
-    """One line, mostly a command to copy; empty if there is nothing to do."""
+    """Name of what was looked at, with the fields of the finding in braces."""
 
-    def __new__(cls, value: str, subject: str, found: str, what_to_do: str = "") -> Self:
-        """Make a member of a code and its texts."""
-        member = str.__new__(cls, value)
-        member._value_ = value
-        member.subject, member.found, member.what_to_do = subject, found, what_to_do
-        return member
+    def __init__(self, _value: str, _text: str = "", _do: str = "", subject: str = "") -> None:
+        """Keep what TextCode does not."""
+        self.subject = subject
 
-    PACKAGE = ("package", "{name}", "{version}, for {used_for}")
+    PACKAGE = ("package", "{version}, for {used_for}", "", "{name}")
     PACKAGE_MISSING = (
         "package missing",
-        "{name}",
         "cannot be imported ({fault}), needed for {used_for}",
         "in the project's folder: {python} -m pip install -e '.[{extra}]'",
+        "{name}",
     )
-    TIMER = ("timer", "timer", _TIMER)
+    TIMER = ("timer", _TIMER, "", "timer")
     TIMER_LATE = (
         "timer late",
-        "timer",
         f"{_TIMER}: ticks would come late or be missed",
         "end other programs, see CPU governor and real-time priority here, then run kurt2rt doctor again",
+        "timer",
     )
     TIMER_MISSING = (
         "timer missing",
-        "timer",
         "no timerfd ({error})",
         "run on Linux, outside of sandboxes that refuse timerfd_create",
+        "timer",
     )
-    PRIORITY = ("priority", "real-time priority", "SCHED_FIFO granted")
+    PRIORITY = ("priority", "SCHED_FIFO granted", "", "real-time priority")
     PRIORITY_REFUSED = (
         "priority refused",
-        "real-time priority",
         "not permitted ({error}), so ticks are missed while other programs are busy",
         "the unit of kurt2rt service install is permitted it; by hand: "
         f'echo "$USER - rtprio 50" | sudo tee -a {_LIMITS_FILE}, then log in again',
+        "real-time priority",
     )
-    CORES = ("cores", "cores", "{usable} usable of {cores}")
+    CORES = ("cores", "{usable} usable of {cores}", "", "cores")
     CORES_FEW = (
         "cores few",
-        "cores",
         "{usable} usable of {cores}: ticks share it with all else",
         "run the teacher's page and the simulator on another machine, or allow more cores (taskset, cpuset)",
+        "cores",
     )
-    GOVERNOR_NONE = ("governor none", "CPU governor", "none to be read: a virtual machine, or a clock that is fixed")
-    GOVERNOR = ("governor", "CPU governor", "{governors}")
+    GOVERNOR_NONE = (
+        "governor none",
+        "none to be read: a virtual machine, or a clock that is fixed",
+        "",
+        "CPU governor",
+    )
+    GOVERNOR = ("governor", "{governors}", "", "CPU governor")
     GOVERNOR_SAVING = (
         "governor saving",
-        "CPU governor",
         "{governors}",
         "echo performance | sudo tee {folder}/cpu*/cpufreq/scaling_governor",
+        "CPU governor",
     )
-    SQLITE_LOG = ("sqlite log", "SQLite log", "write-ahead log works next to a reader")
+    SQLITE_LOG = ("sqlite log", "write-ahead log works next to a reader", "", "SQLite log")
     SQLITE_LOG_FAILS = (
         "sqlite log fails",
-        "SQLite log",
         "does not work in this folder: {fault}",
         "give a folder on a local disk with --folder",
+        "SQLite log",
     )
-    FOLDER = ("folder", "knowledge folder", "{folder} can be written")
+    FOLDER = ("folder", "{folder} can be written", "", "knowledge folder")
     FOLDER_TO_MAKE = (
         "folder to make",
-        "knowledge folder",
         "{folder} is made when it is needed: {parent} can be written",
+        "",
+        "knowledge folder",
     )
     FOLDER_UNWRITABLE = (
         "folder unwritable",
-        "knowledge folder",
         "{folder} cannot be written ({error})",
         _ANOTHER_FOLDER,
+        "knowledge folder",
     )
-    SPACE = ("space", "free space", "{free_gb:.1f} GB free")
-    SPACE_LOW = ("space low", "free space", "{free_gb:.1f} GB free", f"make room, or {_ANOTHER_FOLDER}")
-    SYNC = ("sync", "fsync", _SYNC)
+    SPACE = ("space", "{free_gb:.1f} GB free", "", "free space")
+    SPACE_LOW = ("space low", "{free_gb:.1f} GB free", f"make room, or {_ANOTHER_FOLDER}", "free space")
+    SYNC = ("sync", _SYNC, "", "fsync")
     SYNC_SLOW = (
         "sync slow",
-        "fsync",
         f"{_SYNC}: above {{limit_ms:g}} ms, the teacher waits for each lesson",
         f"use a faster disk: {_ANOTHER_FOLDER}",
+        "fsync",
     )
-    CAN = ("can", "CAN in the kernel", "AF_CAN sockets can be opened")
-    CAN_UNLOADED = ("can unloaded", "CAN in the kernel", "no AF_CAN socket ({error})", "sudo modprobe -a can can_raw")
-    CAN_MISSING = ("can missing", "CAN in the kernel", "no AF_CAN socket ({error})", _OTHER_KERNEL)
-    CAN_INTERFACE = ("can interface", "CAN interface {name}", "up")
+    CAN = ("can", "AF_CAN sockets can be opened", "", "CAN in the kernel")
+    CAN_UNLOADED = ("can unloaded", "no AF_CAN socket ({error})", "sudo modprobe -a can can_raw", "CAN in the kernel")
+    CAN_MISSING = ("can missing", "no AF_CAN socket ({error})", _OTHER_KERNEL, "CAN in the kernel")
+    CAN_INTERFACE = ("can interface", "up", "", "CAN interface {name}")
     CAN_INTERFACE_NONE = (
         "can interface none",
-        "CAN interface",
         "none with hardware in {folder}",
         "plug in the adapter, then: {up}",
+        "CAN interface",
     )
-    CAN_INTERFACE_DOWN = ("can interface down", "CAN interface {name}", "down", "{up}")
+    CAN_INTERFACE_DOWN = ("can interface down", "down", "{up}", "CAN interface {name}")
     CAN_INTERFACE_OFF_BUS = (
         "can interface off bus",
-        "CAN interface {name}",
         "up, but off the bus",
         "check cable, terminators and bit rate; sudo ip link set {name} down; {up}",
+        "CAN interface {name}",
     )
 
 
@@ -149,12 +148,12 @@ class CheckResult:
     @property
     def found(self) -> str:
         """State that was found, in words."""
-        return self.code.found.format(**self.values)
+        return self.code.text.format(**self.values)
 
     @property
     def what_to_do(self) -> str:
         """Remedy, empty if there is nothing to do."""
-        return self.code.what_to_do.format(**self.values)
+        return self.code.do.format(**self.values)
 
     @property
     def forbids_run(self) -> bool:

@@ -2,39 +2,30 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
 from typing import Any, Final
 
-from config.errors import UserError
+from config.errors import TextCode, UserError
 from kurt2rt.core.outcome import Code, Outcome, RefusalCode, outcome_in
 from kurt2rt.core.outcome_text import Surface, fields_of, text_of
 
 
-class NoAnswer(StrEnum):
+class NoAnswer(TextCode):
     """Code for why a request got no usable answer from the robot; some leave open whether it counted."""
 
-    NO_STATE = "no state"
-    """No state came, so nothing was sent."""
-    SILENT = "silent"
-    """No further state came."""
-    NO_REPLY = "no reply"
-    """It is unknown whether the request counted."""
-    STOP_UNANSWERED = "stop unanswered"
-    NOT_UNDERSTOOD = "not understood"
-    NO_ROBOT = "no robot"
-    OTHER = "other"
+    NO_STATE = ("no state", "no word from the robot, so nothing was sent to it")
+    SILENT = ("silent", "no state of the robot for {after_s:g} s")
+    NO_REPLY = (
+        "no reply",
+        "no answer for {after_s:g} s: it is not known whether it counted; look at the lessons",
+    )
+    STOP_UNANSWERED = (
+        "stop unanswered",
+        "the stop is not answered: no answer for {after_s:g} s; it is sent on until it is",
+    )
+    NOT_UNDERSTOOD = ("not understood", "the robot's answer to {path} is not understood: {says}")
+    NO_ROBOT = ("no robot", "no robot answers {says}")
+    OTHER = ("other", "{says}")
     """The text is the caller's."""
-
-
-_NO_ANSWER_TEXTS: Final = {
-    NoAnswer.NO_STATE: "no word from the robot, so nothing was sent to it",
-    NoAnswer.SILENT: "no state of the robot for {after_s:g} s",
-    NoAnswer.NO_REPLY: "no answer for {after_s:g} s: it is not known whether it counted; look at the lessons",
-    NoAnswer.STOP_UNANSWERED: "the stop is not answered: no answer for {after_s:g} s; it is sent on until it is",
-    NoAnswer.NOT_UNDERSTOOD: "the robot's answer to {path} is not understood: {says}",
-    NoAnswer.NO_ROBOT: "no robot answers {says}",
-    NoAnswer.OTHER: "{says}",
-}
 
 
 class NoAnswerError(UserError):
@@ -60,7 +51,7 @@ class NoAnswerError(UserError):
             do: As in UserError.
             parts: Values that the text of the code names.
         """
-        text = _NO_ANSWER_TEXTS[code].format(says=says, **parts)
+        text = code.text.format(says=says, **parts)
         super().__init__(f"{text}. {trouble}" if trouble else text, where=where, do=do)
         self.code = code
 
