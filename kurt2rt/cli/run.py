@@ -106,7 +106,7 @@ class _Options:
         Path | None,
         typer.Option(
             help="Write each CAN frame that is received or sent, with its time, to a new file: .log (candump's), "
-            ".asc, .blf, .csv, .trc or .mf4. 140 MB an hour as .log.",
+            ".asc, .blf, .csv or .trc. 140 MB an hour as .log.",
         ),
     ] = None
     record: Annotated[

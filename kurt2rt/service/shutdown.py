@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
 from types import FrameType, TracebackType
-from typing import Final, Self
+from typing import Self
 
 from config.errors import ExitCode
 from kurt2rt.platform.signal_handlers import SignalHandlers
@@ -102,28 +102,16 @@ class ShutdownClock:
 
 
 class ShutdownStage(StrEnum):
-    """Part of the program that its end is waiting for, named if the end takes too long."""
+    """Part of the program that its end is waiting for, in the words of the last line if that takes too long."""
 
-    START = "start"
-    RUNTIME = "runtime"
-    LOOP = "loop"
-    CHANNEL = "channel"
-    LESSONS = "lessons"
-    RECORDING = "recording"
-    BUS_AND_LOGS = "bus and logs"
-    DISK = "disk"
-
-
-_STAGES: Final = {
-    ShutdownStage.START: "its start",
-    ShutdownStage.RUNTIME: "its runtime",
-    ShutdownStage.LOOP: "its loop",
-    ShutdownStage.CHANNEL: "the teachers' channel",
-    ShutdownStage.LESSONS: "the newest lessons",
-    ShutdownStage.RECORDING: "the end of the recording",
-    ShutdownStage.BUS_AND_LOGS: "the robot's bus and its logs",
-    ShutdownStage.DISK: "a thread that waits for the disk",
-}
+    START = "its start"
+    RUNTIME = "its runtime"
+    LOOP = "its loop"
+    CHANNEL = "the teachers' channel"
+    LESSONS = "the newest lessons"
+    RECORDING = "the end of the recording"
+    BUS_AND_LOGS = "the robot's bus and its logs"
+    DISK = "a thread that waits for the disk"
 
 
 class ShutdownHandler:
@@ -244,7 +232,7 @@ class ShutdownHandler:
 
 def timeout_message(stage: ShutdownStage) -> str:
     """Return the last line of a program whose end took too long."""
-    return f"kurt2rt: ended without {_STAGES[stage]}, which did not end in time; look at disk and network"
+    return f"kurt2rt: ended without {stage}, which did not end in time; look at disk and network"
 
 
 def force_exit(stage: ShutdownStage) -> None:

@@ -17,7 +17,7 @@ async def drive(folder: Path, port: int) -> None:
         await robot.send(Take)
         async with robot.driving() as wheel:
             while True:
-                wheel.set(0.2, 0.2)
+                wheel.set((0.2, 0.2))
                 await anyio.sleep(0.05)
 
 

@@ -40,7 +40,7 @@ def test_library_unknown_name_is_refused_with_the_allowed() -> None:
 
 
 def test_simulated_robot_asks_and_drives_as_taught(robot: kurt2rt.SimulatedRobot) -> None:
-    assert str(robot.question).endswith("situation\nNothing was taught yet, so the robot asks.")
+    assert str(robot.question).endswith("situation\nNothing was taught yet.")
     before = robot.pose
     robot.teach("back")
     robot.step(20)

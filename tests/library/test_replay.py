@@ -40,7 +40,7 @@ def test_replay_of_a_recorded_robot_is_exact(replayed: kurt2rt.ReplayedRun) -> N
 
 
 def test_replay_explains_each_second(replayed: kurt2rt.ReplayedRun) -> None:
-    assert replayed.why(at=0.0).endswith("situation\nNothing was taught yet, so the robot asks.")
+    assert replayed.why(at=0.0).endswith("situation\nNothing was taught yet.")
     assert replayed.why(at=1.0).startswith("forward\nThis is like RLA 1, which says forward")
     with pytest.raises(kurt2rt.Error, match=r"at: outside of the run \(got 9\.0, allowed 0 to 3\.63 s\)"):
         replayed.why(at=9.0)

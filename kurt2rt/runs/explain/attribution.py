@@ -20,18 +20,6 @@ class FeatureShare:
     """Share of the squared distance, 0 to 1; for symbols, of the places that differ."""
 
 
-@dataclass(frozen=True, slots=True)
-class FeatureContrast:
-    """Part of one feature in the answer why one RLA is nearer to a situation than another one."""
-
-    name: str
-    here: float
-    in_first: float
-    in_second: float
-    pull: float
-    """Share of the summed absolute differences, -1 to 1; positive favours the first RLA."""
-
-
 def distance_attribution(level: LevelFacts, rla: RlaFacts) -> tuple[FeatureShare, ...]:
     """Return all features that contribute to the distance, largest share first.
 
@@ -50,24 +38,13 @@ def distance_attribution(level: LevelFacts, rla: RlaFacts) -> tuple[FeatureShare
     )
 
 
-def contrast_attribution(level: LevelFacts, first: RlaFacts, second: RlaFacts) -> tuple[FeatureContrast, ...]:
-    """Return all features that favour one of two RLAs, strongest first."""
+def contrast_attribution(level: LevelFacts, first: RlaFacts, second: RlaFacts) -> dict[str, float]:
+    """Return by feature its share of the summed absolute differences, -1 to 1; positive favours the first RLA."""
     difference = _squares(level, second) - _squares(level, first)
     whole = float(np.abs(difference).sum())
     if not whole > 0 or not np.isfinite(whole):
-        return ()
-    order = np.argsort(-np.abs(difference), kind="stable").tolist()
-    return tuple(
-        FeatureContrast(
-            level.names[place],
-            level.vector[place],
-            first.condition[place],
-            second.condition[place],
-            float(difference[place]) / whole,
-        )
-        for place in order
-        if difference[place] != 0
-    )
+        return {}
+    return dict(zip(level.names, (difference / whole).tolist(), strict=True))
 
 
 def border_distance(level: LevelFacts, first: RlaFacts, second: RlaFacts) -> float | None:

@@ -15,8 +15,8 @@ from kurt2rt.core.decision.standing import (
     touched_bumper,
 )
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.runs.explain.facts import ContactFacts, DecisionFacts, DoubtFacts, LevelFacts, RlaFacts
-from kurt2rt.runs.explain.sentences import format_distance, format_nearness, format_rla
+from kurt2rt.runs.explain.facts import DecisionFacts, DoubtFacts, LevelFacts, RlaFacts
+from kurt2rt.runs.explain.sentences import format_distance, format_nearness, format_rla, why_the_way
 
 _TOLD_DOUBT = 1.0
 """Least doubt that is told of a robot that drives: that of 1 % of the ticks of a usual drive."""
@@ -75,7 +75,9 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
     elif facts.cause == DecisionCause.TOUCHES:
         lines += _touches(facts)
     elif facts.cause == DecisionCause.UNKNOWN:
-        lines += _asks_the_way(facts.mid) if facts.asks_at == MID and facts.mid is not None else _asks(facts.basic)
+        of_way = facts.asks_at == MID and facts.mid is not None
+        why = why_the_way(facts.mid) if of_way and facts.mid is not None else _why_ask(facts.basic)
+        lines.append(f"{_capital(why)}.")
     else:
         lines.append(_sentence(facts))
         lines += _autonomous_action(facts)
@@ -113,17 +115,13 @@ def _rla_drives(level: LevelFacts) -> list[str]:
     nearest, driver = level.nearest, level.driver
     if nearest is None:
         return ["What drove is not among the RLAs any more."]
-    lines = [
-        f"This is like {nearest.title}, which says {nearest.action}: "
-        f"distance {format_nearness(nearest)}{_format_percent(nearest)}."
+    if driver is None or driver.rla_id == nearest.rla_id:
+        return [f"This is like {nearest.title}, which says {nearest.action}: distance {format_nearness(nearest)}."]
+    worth = "" if driver.value is None else f" and has the value {driver.value:.2f}"
+    return [
+        f"This is like {nearest.title}: distance {format_nearness(nearest)}. "
+        f"Of those on the very same condition {driver.title} was chosen, which says {driver.action}{worth}."
     ]
-    if driver is not None and driver.rla_id != nearest.rla_id:
-        lines[0] = (
-            f"This is like {nearest.title}: distance {format_nearness(nearest)}"
-            f"{_format_percent(nearest)}. Of those on the very same condition {driver.title} was chosen, which says "
-            f"{driver.action}{_format_value(driver)}."
-        )
-    return lines
 
 
 def _held(level: LevelFacts) -> list[str]:
@@ -132,7 +130,7 @@ def _held(level: LevelFacts) -> list[str]:
         return ["An action keeps its minimum time."]
     return [
         f"{driver.title} ({driver.action}) was chosen a moment ago, and its action keeps its minimum time.",
-        f"Nearest by now is {format_rla(nearest)}, at {format_nearness(nearest)}{_format_percent(nearest)}.",
+        f"Nearest by now is {format_rla(nearest)}, at {format_nearness(nearest)}.",
     ]
 
 
@@ -148,7 +146,7 @@ def _passed_over(level: LevelFacts) -> list[str]:
 def _touches(facts: DecisionFacts) -> list[str]:
     why, leader = reason_text(standing_of(facts)), facts.basic.leader
     says = "an RLA goes on toward it" if leader is None else f"{format_rla(leader)} goes on toward it"
-    return [f"{why[0].upper()}{why[1:]}, and {says}: the guard lets no wheel turn that way, so the robot asks."]
+    return [f"{_capital(why)}, and {says}: the guard lets no wheel turn that way, so the robot asks."]
 
 
 def _doubts(level: LevelFacts, doubt: DoubtFacts | None) -> list[str]:
@@ -161,12 +159,6 @@ def _doubts(level: LevelFacts, doubt: DoubtFacts | None) -> list[str]:
     ]
 
 
-def _format_contact(contact: ContactFacts) -> str:
-    return (
-        f"{contact.action} would meet in {contact.within_s:.1f} s what {contact.sensor} saw {contact.seen_s:.1f} s ago"
-    )
-
-
 def _doubts_a_little(doubt: DoubtFacts | None) -> list[str]:
     if doubt is None or doubt.score < _TOLD_DOUBT:
         return []
@@ -175,31 +167,29 @@ def _doubts_a_little(doubt: DoubtFacts | None) -> list[str]:
 
 def _why_doubt(doubt: DoubtFacts) -> str:
     if doubt.contact is not None:
-        return _format_contact(doubt.contact)
+        contact = doubt.contact
+        seen = f"what {contact.sensor} saw {contact.seen_s:.1f} s ago"
+        return f"{contact.action} would meet in {contact.within_s:.1f} s {seen}"
     if not doubt.sensor:
         return "the situation is farther from the lesson than usual"
     return f"{doubt.sensor} sees {doubt.reads}, and lessons to drive on reach {doubt.taught}"
 
 
-def _asks(level: LevelFacts) -> list[str]:
+def _why_ask(level: LevelFacts) -> str:
+    """Return why the basic level asks, or would ask."""
     nearest, of = level.nearest, f" of {level.behaviour}" if level.behaviour else ""
     if nearest is None and level.count:
-        return [f"A learner without RLAs decides{of}, and does not know this situation: the robot asks."]
+        return f"a learner without RLAs decides{of}, and does not know this situation"
     if nearest is None:
-        return [f"Nothing{of} was taught yet, so the robot asks."]
+        return f"nothing{of} was taught yet"
     if nearest.distance <= nearest.radius:
         if nearest.asks:
-            return [
-                f"This is like {nearest.title}, at {format_nearness(nearest)}, "
-                "whose action was withdrawn: there the robot asks."
-            ]
-        return [f"{nearest.title} says {nearest.action}, which does not know how to go on here: the robot asks."]
-    return [
-        f"No RLA{of} is near enough: the nearest is {format_rla(nearest)}, at {format_distance(nearest.distance)}, "
-        f"{nearest.distance / nearest.radius:.2f} times {_limit(level, nearest)}."
-        if nearest.radius > 0 and math.isfinite(nearest.distance)
-        else f"No RLA{of} is near enough: the nearest is {format_rla(nearest)}, {format_distance(nearest.distance)}."
-    ]
+            return f"this is like {nearest.title}, at {format_nearness(nearest)}, whose action was withdrawn"
+        return f"{nearest.title} says {nearest.action}, which does not know how to go on here"
+    far = f"no RLA{of} is near enough: the nearest is {format_rla(nearest)}, at {format_distance(nearest.distance)}"
+    if not (nearest.radius > 0 and math.isfinite(nearest.distance)):
+        return far
+    return f"{far}, {nearest.distance / nearest.radius:.2f} times {_limit(level, nearest)}"
 
 
 def _limit(level: LevelFacts, nearest: RlaFacts) -> str:
@@ -211,15 +201,6 @@ def _limit(level: LevelFacts, nearest: RlaFacts) -> str:
     return f"{level.radius_share:g} R ({limit} of {whole}), its limit while it is taught"
 
 
-def _asks_the_way(level: LevelFacts) -> list[str]:
-    nearest = level.nearest
-    if level.lost:
-        return ["The robot is lost: no teacher has set its location, so it asks."]
-    if nearest is None:
-        return ["The mid level was taught nothing yet, so the robot asks which behaviour to follow."]
-    return [f"The mid level does not know the way from here: {_format_nearest(nearest)}."]
-
-
 def _autonomous_action(facts: DecisionFacts) -> list[str]:
     """Describe what the robot would do without the stop, the manual driving or the blocking cause."""
     if facts.cause in _NOTHING_BESIDE:
@@ -229,7 +210,7 @@ def _autonomous_action(facts: DecisionFacts) -> list[str]:
     if unable is not None:
         return [_would_stand(unable, facts)]
     if facts.asks_at == MID and facts.mid is not None:
-        return [f"By itself it would ask the way: {_why_the_way(facts.mid)}."]
+        return [f"By itself it would ask the way: {why_the_way(facts.mid)}."]
     nearest, leader = facts.basic.nearest, facts.basic.leader
     known = nearest is not None and nearest.distance <= nearest.radius and not nearest.asks
     stands = next(iter(others), None)
@@ -239,34 +220,14 @@ def _autonomous_action(facts: DecisionFacts) -> list[str]:
         return [_would_stand(stands, facts)]
     if nearest is None and facts.basic.count:
         return ["By itself it would do as its learner decides, which has no RLAs."]
-    if nearest is None or leader is None:
-        return ["By itself it would ask: nothing was taught yet."]
-    if known:
+    if known and leader is not None:
         return [f"By itself it would do as {format_rla(leader)} says, at {format_nearness(leader)}."]
-    return [f"By itself it would ask: {_format_nearest(nearest)}."]
+    return [f"By itself it would ask: {_why_ask(facts.basic)}."]
 
 
 def _would_stand(cause: DecisionCause, facts: DecisionFacts) -> str:
     return f"By itself it would stand: {reason_text(_standing_by(cause, facts))}."
 
 
-def _why_the_way(mid: LevelFacts) -> str:
-    if mid.lost:
-        return "it is lost, because no teacher has set its location"
-    if mid.nearest is None:
-        return "the mid level was taught nothing yet"
-    return _format_nearest(mid.nearest)
-
-
-def _format_nearest(rla: RlaFacts) -> str:
-    return f"nearest is {format_rla(rla)}, at {format_nearness(rla)}"
-
-
-def _format_percent(rla: RlaFacts) -> str:
-    if not rla.radius > 0 or math.isinf(rla.distance):
-        return ""
-    return f" ({100 * rla.distance / rla.radius:.0f} %)"
-
-
-def _format_value(rla: RlaFacts) -> str:
-    return "" if rla.value is None else f" and has the value {rla.value:.2f}"
+def _capital(text: str) -> str:
+    return text[0].upper() + text[1:]

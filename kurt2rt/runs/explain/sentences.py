@@ -88,8 +88,10 @@ def format_stamp(act: LessonFact) -> str:
 
 
 def format_nearness(rla: RlaFacts) -> str:
-    """Return the distance of an RLA and its radius, such as "12.3 of R 20"."""
-    return f"{format_distance(rla.distance)} of R {format_distance(rla.radius)}"
+    """Return the distance of an RLA and its radius, such as "12.3 of R 20 (62 %)"."""
+    share = rla.distance / rla.radius if rla.radius > 0 else math.inf
+    percent = f" ({100 * share:.0f} %)" if math.isfinite(share) else ""
+    return f"{format_distance(rla.distance)} of R {format_distance(rla.radius)}{percent}"
 
 
 def format_distance(distance: float) -> str:
@@ -114,9 +116,18 @@ def format_mid_level(facts: DecisionFacts) -> list[str]:
             format_teaching(rla),
         ]
     else:
-        lost = ", because it is lost: no teacher has set its location" if mid.lost else ""
-        lines = [f"Mid level: it asks{lost}.{'' if mid.lost else came_by}"]
+        lines = [f"Mid level: it asks; {why_the_way(mid)}.{'' if mid.lost else came_by}"]
     return [*lines, *([f"Goal: {facts.plan_says}"] if facts.plan_says else [])]
+
+
+def why_the_way(mid: LevelFacts) -> str:
+    """Return why the mid level asks, or would ask."""
+    if mid.lost:
+        return "no teacher has set the location of the robot"
+    if mid.nearest is None:
+        return "the mid level was taught nothing yet"
+    nearest = f"nearest is {format_rla(mid.nearest)}, at {format_nearness(mid.nearest)}"
+    return f"the mid level does not know the way from here: {nearest}"
 
 
 def format_count(count: int) -> str:

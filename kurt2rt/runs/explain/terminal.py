@@ -69,7 +69,7 @@ def _of_level(level: LevelFacts, rla: RlaFacts | None, words: SensorWords) -> li
 def _differences(level: LevelFacts, rla: RlaFacts, words: SensorWords) -> RenderableType:
     found = distance_attribution(level, rla)
     other = level.contrast_of(rla)
-    pull = {} if other is None else {each.name: each.pull for each in contrast_attribution(level, rla, other)}
+    pull = {} if other is None else contrast_attribution(level, rla, other)
     theirs = {} if other is None else dict(zip(level.names, other.condition, strict=True))
     table = TextTable("feature")
     table.add_column("here", number=True)

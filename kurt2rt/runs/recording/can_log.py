@@ -19,8 +19,8 @@ _CHANNEL = "can0"
 """Channel name in the file for a bus that is no kernel interface, so that canplayer accepts the log."""
 
 
-ENDINGS = (".log", ".asc", ".blf", ".csv", ".trc", ".mf4")
-"""Suffixes of candump, Vector ASC and BLF, CSV, PEAK trace and ASAM MF4.
+ENDINGS = (".log", ".asc", ".blf", ".csv", ".trc")
+"""Suffixes of candump, Vector ASC and BLF, CSV and PEAK trace.
 
 python-can's SQLite is left out: its queue is unbounded.
 """
@@ -53,13 +53,7 @@ class LogFile:
             )
         self.path = _create_numbered(path)
         """Path of the file."""
-        try:
-            self._writer = can.Logger(self.path)
-        except NotImplementedError as error:
-            self.path.unlink()
-            raise RecordingError(
-                "needs the package asammdf", where=path, do="install it, or give a name in .blf"
-            ) from error
+        self._writer = can.Logger(self.path)
         self._is_candump = path.suffix == ".log"
 
     def write(self, frames: Sequence[can.Message]) -> None:
@@ -71,7 +65,7 @@ class LogFile:
             flush()
 
     def close(self) -> None:
-        """Complete the file: BLF and MF4 are readable only then. Raises OSError."""
+        """Complete the file: BLF is readable only then. Raises OSError."""
         self._writer.stop()
 
 

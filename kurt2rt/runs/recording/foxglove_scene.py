@@ -23,7 +23,6 @@ from foxglove.messages import (
     SceneUpdate,
     TextPrimitive,
     Timestamp,
-    TriangleListPrimitive,
     Vector3,
 )
 
@@ -43,7 +42,6 @@ _RAY = Color(r=0.2, g=0.45, b=0.8, a=0.9)
 _FAR_RAY = Color(r=0.6, g=0.6, b=0.6, a=0.35)
 _AHEAD = Color(r=1.0, g=1.0, b=1.0, a=0.9)
 _WALL = Color(r=0.55, g=0.55, b=0.55, a=1.0)
-_WALL_FACE = Color(r=0.55, g=0.55, b=0.55, a=0.3)
 _WALL_HEIGHT_M = 0.15
 _ROBOT_HEIGHT_M = 0.25
 _RAY_HEIGHT_M = 0.1
@@ -195,11 +193,6 @@ class RobotScene:
 def world_scene(world: WorldPlan, time_ns: int) -> SceneUpdate:
     """Return the walls and posts of the simulated world."""
     outlines = [corners for corners in (world.outline, *(wall.corners for wall in world.walls)) if corners]
-    faces = TriangleListPrimitive(
-        pose=_pose(PlanePose(0.0, 0.0, 0.0)),
-        points=[point for corners in outlines for point in _faces_under(corners)],
-        color=_WALL_FACE,
-    )
     lines = [
         LinePrimitive(
             type=LinePrimitiveLineType.LineLoop,
@@ -226,20 +219,9 @@ def world_scene(world: WorldPlan, time_ns: int) -> SceneUpdate:
         id="world",
         lifetime=Duration(0, 0),
         lines=lines,
-        triangles=[faces],
         cylinders=posts,
     )
     return SceneUpdate(entities=[entity])
-
-
-def _faces_under(corners: Sequence[tuple[float, float]]) -> list[Point3]:
-    """Return two triangles per side of a closed outline, from floor to wall height; x, y in m."""
-    points = []
-    for (from_x, from_y), (to_x, to_y) in zip(corners, (*corners[1:], corners[0]), strict=True):
-        low, high = Point3(x=from_x, y=from_y, z=0.0), Point3(x=from_x, y=from_y, z=_WALL_HEIGHT_M)
-        end_low, end_high = Point3(x=to_x, y=to_y, z=0.0), Point3(x=to_x, y=to_y, z=_WALL_HEIGHT_M)
-        points += [low, end_low, end_high, low, end_high, high]
-    return points
 
 
 def describe_decision(decision: Decision, behaviour: str) -> str:

@@ -47,11 +47,6 @@ class PolicyAnswer(NamedTuple):
         """Action of the answer; None for a question."""
         return None if self.rla is None else self.rla.action
 
-    @property
-    def share_of_radius(self) -> float:
-        """Distance to the nearest condition as a fraction of R; above 1 outside."""
-        return self.distance / self.radius if self.radius else math.inf
-
 
 class PolicyAnswers(NamedTuple):
     """Answers of basic and mid level to the situation of one tick, to be compared with other knowledge's."""

@@ -147,13 +147,14 @@ class Diagnostics:
             yield _Found(TroubleCode.TICKS_LATE, numbers=(punctuality.p99_ms,))
 
 
-_COUNTERS: Final = {
+BUS_COUNTERS: Final = {
     "junk": TroubleCode.CAN_JUNK,
-    "error frames": TroubleCode.CAN_ERROR_FRAMES,
-    "send failures": TroubleCode.SEND_FAILURES,
-    "receive failures": TroubleCode.RECEIVE_FAILURES,
-    "foreign control": TroubleCode.FOREIGN_CONTROL,
+    "error_frames": TroubleCode.CAN_ERROR_FRAMES,
+    "send_failures": TroubleCode.SEND_FAILURES,
+    "receive_failures": TroubleCode.RECEIVE_FAILURES,
+    "foreign_control": TroubleCode.FOREIGN_CONTROL,
 }
+"""Trouble of each counter of errors on the bus, by its name in hal.health.Health."""
 
 
 def _of_bus(snapshot: Snapshot, counted: CounterGrowth) -> Iterator[_Found]:
@@ -162,7 +163,7 @@ def _of_bus(snapshot: Snapshot, counted: CounterGrowth) -> Iterator[_Found]:
         return
     if bus.trouble:
         yield _Found(TroubleCode.BUS_ALARM, bus.latched is not None, line=bus.trouble)
-    for name, code in _COUNTERS.items():
+    for name, code in BUS_COUNTERS.items():
         lately = counted.growth(name)
         if lately:
             yield _Found(code, numbers=(lately,))

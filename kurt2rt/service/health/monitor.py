@@ -28,7 +28,7 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.platform.durable_files import free_bytes
 from kurt2rt.runtime import Runtime
-from kurt2rt.service.health.diagnostics import CounterGrowth, Diagnostics
+from kurt2rt.service.health.diagnostics import BUS_COUNTERS, CounterGrowth, Diagnostics
 from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.health.snapshot import Snapshot, take_snapshot
 
@@ -190,28 +190,14 @@ class HealthMonitor:
 def _counters(snapshot: Snapshot) -> Mapping[str, int]:
     counters = {f"drops {of}": count for of, count in snapshot.drops.items()}
     counters["missed"] = snapshot.missed_ticks
-    bus = snapshot.bus
-    if bus is not None:
-        counters |= {
-            "junk": bus.junk,
-            "error frames": bus.error_frames,
-            "send failures": bus.send_failures,
-            "receive failures": bus.receive_failures,
-            "foreign control": bus.foreign_control,
-        }
+    if snapshot.bus is not None:
+        counters |= {name: getattr(snapshot.bus, name) for name in BUS_COUNTERS}
     return counters
 
 
 def _bus_health(bus: Health) -> BusHealth:
-    return BusHealth(
-        controller=bus.controller.value,
-        frames=bus.frames,
-        junk=bus.junk,
-        error_frames=bus.error_frames,
-        foreign_control=bus.foreign_control,
-        send_failures=bus.send_failures,
-        receive_failures=bus.receive_failures,
-    )
+    counters = {name: getattr(bus, name) for name in BUS_COUNTERS}
+    return BusHealth(controller=bus.controller.value, frames=bus.frames, **counters)
 
 
 def _finite(age_s: float) -> float | None:

@@ -19,7 +19,7 @@ from kurt2rt.channel.protocol.limits import UPLOAD_ID_BYTES, UPLOAD_PART_BYTES
 from kurt2rt.channel.protocol.requests import CommandRequest, LoadRequest, UploadRequest
 from kurt2rt.core.teaching.commands import Correct, Resume, RunBehaviour, Single, Stop, Take, TeachShown
 from kurt2rt.teacher.client.answer import Answer, RefusedError
-from kurt2rt.teacher.client.manual_drive import HoldHandle, ManualDriveHandle
+from kurt2rt.teacher.client.manual_drive import PressHandle
 from kurt2rt.teacher.client.observer_client import ObserverClient
 
 _SEEN_IN_CHARGE_WITHIN_S = 1.0
@@ -116,7 +116,7 @@ class TeacherClient(ObserverClient):
         The press ends if the robot refuses it, or if no state came for 0.5 s; the next call then begins another one.
         Raises WireError for speeds out of range.
         """
-        return self._drive.press(left_m_s, right_m_s)
+        return self._drive.press((left_m_s, right_m_s))
 
     def press_action(self, action: str) -> bool:
         """Begin to hold an action, or hold another one in the present press; return whether a press is on.
@@ -124,7 +124,7 @@ class TeacherClient(ObserverClient):
         The robot does the action and is taught it on the way, until `let_go`. Raises WireError for a name that cannot
         be sent.
         """
-        return self._drive.hold(action)
+        return self._drive.press(action)
 
     async def let_go(self) -> Answer | None:
         """End the press that is on, and return the robot's answer; None if no press is on.
@@ -136,30 +136,20 @@ class TeacherClient(ObserverClient):
         return await self._open.end_press(self._drive.press_id)
 
     @asynccontextmanager
-    async def driving(self) -> AsyncIterator[ManualDriveHandle]:
+    async def driving(self) -> AsyncIterator[PressHandle]:
         """Drive by hand inside the block; the press begins with the first speeds and ends with a stop.
 
         Raises NoAnswerError at the end of the block if the stop is not answered.
         """
-        handle = ManualDriveHandle(self._drive)
-        async with self._open.ending(handle):
-            yield handle
-
-    @asynccontextmanager
-    async def hold(self, action: str) -> AsyncIterator[HoldHandle]:
-        """Hold an action inside the block: the robot does it, and is taught it in the situations on the way.
-
-        At the end of the block the robot drives on by its RLAs at once. Each 0.1 s becomes a lesson, unless the robot
-        would do that action there by itself; the lessons are undone together. Afterwards the handle tells how many.
-        Raises NoAnswerError at the end of the block, and WireError for a name that cannot be sent.
-        """
-        handle = HoldHandle(self._drive)
-        handle.set(action)
+        handle = PressHandle(self._drive)
         async with self._open.ending(handle):
             yield handle
 
     async def hold_for(self, action: str, seconds: float) -> Answer:
         """Hold an action for a time: the robot does it, is taught it on the way, and then drives on by its RLAs.
+
+        Each 0.1 s becomes a lesson, unless the robot would do that action there by itself; the lessons are undone
+        together.
 
         Returns:
             Answer to the release, with the number of lessons; the refusal of a hold that ended before its time.
@@ -168,7 +158,9 @@ class TeacherClient(ObserverClient):
             NoAnswerError: The release is not answered.
             WireError: The name cannot be sent.
         """
-        async with self.hold(action) as handle:
+        handle = PressHandle(self._drive)
+        handle.set(action)
+        async with self._open.ending(handle):
             await handle.wait(seconds)
         ended = handle.released or handle.ended or self._drive.refusal
         assert ended is not None, "a hold that is not released was refused"

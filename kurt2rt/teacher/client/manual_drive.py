@@ -95,21 +95,11 @@ class ManualDrive:
         """Number of the press that is on; None if none is."""
         return None if self._press is None else self._press.press_id
 
-    def press(self, left_m_s: float, right_m_s: float) -> bool:
-        """Begin a press, or change the speeds of the present one; return whether a press is on.
+    def press(self, wish: Wish) -> bool:
+        """Begin a press, or change the speeds or the action of the present one; return whether a press is on.
 
-        Raises WireError for speeds out of range.
+        Raises WireError for speeds out of range, and for a name that cannot be sent.
         """
-        return self._wish((left_m_s, right_m_s))
-
-    def hold(self, action: str) -> bool:
-        """Begin to hold an action, or hold another one in the present press; return whether a press is on.
-
-        Raises WireError for a name that cannot be sent.
-        """
-        return self._wish(action)
-
-    def _wish(self, wish: Wish) -> bool:
         state = self._fresh_state()
         if state is None:
             self.end(local_refusal(RefusalCode.NO_PICTURE))
@@ -224,38 +214,15 @@ class PressHandle:
                 return
             await anyio.sleep(min(left_s, _POLL_S))
 
-    def _press(self, press: Callable[[], bool]) -> bool:
-        """Begin or change the press; return whether it is on."""
+    def set(self, wish: Wish) -> bool:
+        """Begin the press, or change it; return whether it is on. Raises WireError, as `ManualDrive.press`."""
         # An ended press does not begin again by itself: after a pause the teacher may no longer mean it.
         if self._press_id is not None and self._drive.press_id != self._press_id:
             return False
-        pressing = press()
+        pressing = self._drive.press(wish)
         if self._press_id is None:
             self._press_id = self._drive.press_id
         return pressing
-
-
-class ManualDriveHandle(PressHandle):
-    """Handle of a drive by hand, from `TeacherClient.driving`; the drive ends with a stop."""
-
-    def set(self, left_m_s: float, right_m_s: float) -> bool:
-        """Set the speeds; return whether the press is on. Raises WireError for speeds out of range."""
-        return self._press(lambda: self._drive.press(left_m_s, right_m_s))
-
-
-class HoldHandle(PressHandle):
-    """Handle of a held action, by which a teacher corrects, from `TeacherClient.hold`."""
-
-    def set(self, action: str) -> bool:
-        """Hold an action, at first or instead of another one; return whether the press is on. Raises WireError."""
-        return self._press(lambda: self._drive.hold(action))
-
-    @property
-    def lessons(self) -> int:
-        """Number of lessons that the press gave, known after its end."""
-        given = None if self.released is None or self.released.outcome is None else self.released.outcome.fields
-        lessons = 0 if given is None else given.get("lessons")
-        return lessons if isinstance(lessons, int) else 0
 
 
 def _message(press: _Press, seen: int, wish: Wish) -> StreamRequest:

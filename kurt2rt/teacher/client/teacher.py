@@ -267,7 +267,7 @@ class Teacher:
 
     async def _drive(self, left_m_s: float, right_m_s: float, seconds: float) -> str:
         async with self._client.driving() as handle:
-            if not handle.set(left_m_s, right_m_s):
+            if not handle.set((left_m_s, right_m_s)):
                 refusal = handle.ended or self._client.refusal
                 return "" if refusal is None else refusal.text or refusal.why
             await handle.wait(seconds)

@@ -20,7 +20,7 @@ def test_attribution_at_the_taught_situation_is_empty() -> None:
 
 
 def test_of_two_equal_ones_nothing_speaks_for_either() -> None:
-    assert contrast_attribution(level(HERE, MINE, MINE), MINE, MINE) == ()
+    assert contrast_attribution(level(HERE, MINE, MINE), MINE, MINE) == {}
     assert border_distance(level(HERE, MINE, MINE), MINE, MINE) is None
 
 

@@ -48,7 +48,7 @@ def test_counterfactual_of_no_knowledge_asks_at_each_drive(
     stretch = next(each for each in found.stretches if each.level == BASIC)
     assert stretch.would_be == (None, None, math.inf, 0.0)
     assert stretch.was.rla is not None
-    assert stretch.was.share_of_radius <= 1.0
+    assert stretch.was.distance <= stretch.was.radius
     assert sum(each.ticks for each in found.stretches if each.level == BASIC) == found.would_ask
     assert all(each.from_s <= each.to_s <= seconds for each in found.stretches)
 

@@ -511,7 +511,7 @@ async def test_let_go_ends_press_before_its_answer(client: TeacherClient, robot:
 
 async def test_driving_block_after_stop_leaves_next_press_alone(client: TeacherClient, robot: StandInRobot) -> None:
     async with client.driving() as wheel:
-        assert wheel.set(0.2, 0.2)
+        assert wheel.set((0.2, 0.2))
         await client.stop()
         assert client.press(0.1, 0.1)
     assert client.pressing
@@ -547,13 +547,13 @@ async def test_press_id_grows_across_restarts_and_renewals(
 
 async def test_a_driving_block_ends_with_a_stop(client: TeacherClient, robot: StandInRobot) -> None:
     async with client.driving() as wheel:
-        assert wheel.set(0.2, 0.2)
+        assert wheel.set((0.2, 0.2))
         await robot.hears(Drive, 2)
-        assert wheel.set(0.1, 0.2)
+        assert wheel.set((0.1, 0.2))
     released = robot.heard[-1]
     assert isinstance(released, StopRequest)
     assert released.press_id == wheel.press_id == robot.all_of(Drive)[-1].press_id
-    assert not wheel.set(0.2, 0.2)
+    assert not wheel.set((0.2, 0.2))
     assert wheel.ended is not None
     assert wheel.ended.code is RefusalCode.PRESS_OVER
 
@@ -561,7 +561,7 @@ async def test_a_driving_block_ends_with_a_stop(client: TeacherClient, robot: St
 async def test_driving_block_cancelled_stops(client: TeacherClient, robot: StandInRobot) -> None:
     async def drive() -> None:
         async with client.driving() as wheel:
-            wheel.set(0.2, 0.2)
+            wheel.set((0.2, 0.2))
             await anyio.sleep_forever()
 
     async with anyio.create_task_group() as tasks:
@@ -594,12 +594,12 @@ async def test_a_refused_press_ends_and_says_why(client: TeacherClient, robot: S
 
     robot.mind = refuses
     async with client.driving() as wheel:
-        assert wheel.set(0.2, 0.2)
+        assert wheel.set((0.2, 0.2))
         await eventually(lambda: not client.pressing)
         assert client.refusal is not None
         assert (client.refusal.why, client.refusal.outcome) == (why, HELD)
         assert wheel.ended == client.refusal
-        assert not wheel.set(0.2, 0.2)
+        assert not wheel.set((0.2, 0.2))
     assert robot.all_of(StopRequest) == []
 
 

@@ -114,7 +114,7 @@ async def test_drive_by_hand_is_shown_taught_and_undone_as_one(tmp_path: Path) -
             assert (await robot.send(Take)).accepted
             await state_where(robot, teacher="phone")
             async with robot.driving() as drive:
-                assert drive.set(0.2, 0.2)
+                assert drive.set((0.2, 0.2))
                 await anyio.sleep(0.6)
             with anyio.fail_after(PATIENCE_S):
                 async for state in robot.states():
