@@ -164,7 +164,7 @@ def check(task: TaskSettings, seed: int, ticks: int) -> None:
     reopened = Bedlam(task, seed, town.notebook.events).runtime.level.system
     assert reopened.knowledge_hash() == system.knowledge_hash()
     assert reopened.named_situations(MID) == system.named_situations(MID)
-    assert reopened.lessons == system.lessons
+    assert reopened.history.records == system.history.records
 
 
 @pytest.mark.parametrize("task", [ROUTE, PLACES], ids=["histories", "places"])

@@ -7,7 +7,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.core.decision.decision import GoalStatus
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal, goal_text
 from kurt2rt.core.perception.sensor_words import NO_WORDS, words_for
-from kurt2rt.core.planning.goal_pursuit import GoalPursuit, Plan
+from kurt2rt.core.planning.goal_pursuit import GoalPursuit
 from kurt2rt.core.planning.topological_map import Edge
 from kurt2rt.core.rla.events import Appraised, Lesson, LessonRedone, TeachingEvent
 from kurt2rt.core.rla.lesson_history import LessonRecord, hold_text
@@ -73,7 +73,7 @@ def goals() -> Iterator[tuple[str, str]]:
             yield status, goal_text(status, "door")
     for ways in (1, 3):
         pursuit = _pursuit(GoalStatus.UNDER_WAY)
-        pursuit.plan = Plan(tuple(Edge(rla_id, "turn_left", 0, 1, 1.0, 9.0) for rla_id in range(4, 4 + ways)))
+        pursuit.plan = tuple(Edge(rla_id, "turn_left", 0, 1, 1.0, 9.0) for rla_id in range(4, 4 + ways))
         yield f"{GoalStatus.UNDER_WAY}, ways: {ways}", pursuit.text
     given_up = _pursuit(GoalStatus.UNDER_WAY)
     given_up.give_up("<a refusal>")

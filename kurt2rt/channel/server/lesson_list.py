@@ -48,7 +48,7 @@ class LessonList:
 
     def contradiction_of(self, command_id: str) -> Contradiction | None:
         """Return the contradiction that a lesson made and that lasts; None if there is none."""
-        record = self._system.lesson(command_id)
+        record = self._system.history.get(command_id)
         if record is None or record.undone or not isinstance(record.event, RlaCreated | ActionReplaced):
             return None
         rla = self._system.get(rla_id_of(record.event))
@@ -60,7 +60,7 @@ class LessonList:
         """Yield the id that undoes a row, its text, and its lessons, at least one, newest row first."""
         holds: set[str] = set()
         listed = 0
-        for record in reversed(self._system.lessons if count else ()):
+        for record in reversed(self._system.history.records if count else ()):
             command_id = record.event.origin.command_id
             hold = hold_of(command_id)
             if hold in holds:
@@ -72,7 +72,7 @@ class LessonList:
                 yield command_id, record.text, (record,)
                 continue
             holds.add(hold)
-            given = tuple(filter(None, map(self._system.lesson, self._system.history.of_hold(hold))))
+            given = tuple(filter(None, map(self._system.history.get, self._system.history.of_hold(hold))))
             yield hold, hold_text(given), (record, *(each for each in given if each is not record))
 
 

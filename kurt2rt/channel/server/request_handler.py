@@ -98,7 +98,7 @@ class RequestHandler:
 
     def lesson_of(self, command_id: str) -> str | None:
         """Return the id that undoes the lesson of a command; None if the command gave no lesson."""
-        return None if self._runtime.level.system.lesson(command_id) is None else command_id
+        return None if self._runtime.level.system.history.get(command_id) is None else command_id
 
     async def answer(self, sender: Sender, request: Request) -> Reply:
         """Return the reply to a request of an authenticated sender; refusals are replies, too.

@@ -142,7 +142,7 @@ class Expectations:
         Returns the id of that RLA, which may have had no expectation; None if the event changes no action.
         """
         if isinstance(event, LessonUndone | LessonRedone):
-            record = self._system.lesson(event.lesson)
+            record = self._system.history.get(event.lesson)
             return None if record is None else self._forget(record.event)
         return self._forget(event)
 

@@ -1,9 +1,7 @@
 """Pursuit of a goal: plan, follow the plan, plan again after a surprise, and report a missing path."""
 
 import heapq
-import math
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
 
 from kurt2rt.core.decision.decision import GoalStatus
 from kurt2rt.core.decision.goal import Goal, goal_text
@@ -23,25 +21,8 @@ _STANDING = {
 """Reason of the standstill by each status in which the robot stands."""
 
 
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """Way from the present place to the goal: edges of the topological map in driving order."""
-
-    edges: tuple[Edge, ...]
-
-    @property
-    def ticks(self) -> float:
-        """Expected time of the whole way, in ticks."""
-        return math.fsum(edge.ticks for edge in self.edges)
-
-    @property
-    def next(self) -> Edge | None:
-        """Edge to drive now; None at the goal."""
-        return self.edges[0] if self.edges else None
-
-    def after_first(self) -> "Plan":
-        """Return the rest of the plan after its first edge; empty after the last edge."""
-        return Plan(self.edges[1:])
+Plan = tuple[Edge, ...]
+"""Way from the present place to the goal: edges of the topological map in driving order."""
 
 
 def plan_to(topological_map: TopologicalMap, start: int, goals: Collection[int]) -> Plan | None:
@@ -60,7 +41,7 @@ def plan_to(topological_map: TopologicalMap, start: int, goals: Collection[int])
     while place != start:
         edges.append(last[place])
         place = last[place].start
-    return Plan(tuple(reversed(edges)))
+    return tuple(reversed(edges))
 
 
 def _cheapest_edges(topological_map: TopologicalMap, start: int) -> tuple[dict[int, float], dict[int, Edge]]:
@@ -117,8 +98,8 @@ class GoalPursuit:
         """Places that matched the goal on the map, but not when the robot arrived."""
         self.goal: Goal | None = None
         self.status = GoalStatus.NONE
-        self.plan: Plan | None = None
-        """Rest of the plan; its first edge is being driven."""
+        self.plan: Plan = ()
+        """Rest of the plan, whose first edge is being driven; empty without one."""
         self.surprises = 0
         """Number of arrivals at another place than planned, for this goal."""
 
@@ -141,10 +122,9 @@ class GoalPursuit:
             return ""
         if self.status is GoalStatus.NO_WAY and self._lost_meaning:
             return f"{self.goal.text} cannot be gone to any more: {self._lost_meaning}"
-        left = 0 if self.plan is None else len(self.plan.edges)
-        edge = None if self.plan is None else self.plan.next
-        if edge is None or self.status is not GoalStatus.UNDER_WAY:
+        if not self.plan or self.status is not GoalStatus.UNDER_WAY:
             return goal_text(self.status, self.goal.text)
+        edge, left = self.plan[0], len(self.plan)
         ways = "1 way" if left == 1 else f"{left} ways"
         return f"on the way to {self.goal.text}: {ways} left, now {edge.action} (RLA {edge.rla_id})"
 
@@ -154,7 +134,7 @@ class GoalPursuit:
         self.goal, self._target = goal, target
         self._lost_meaning = ""
         self._rejected_goals.clear()
-        self._map_builder = self.plan = None
+        self._map_builder, self.plan = None, ()
         self.status = GoalStatus.UNDER_WAY
         self.surprises = 0
 
@@ -180,31 +160,28 @@ class GoalPursuit:
         """Process the arrival in a situation (d,): at the goal, at the planned place, or elsewhere."""
         if self._target is None or self.status is GoalStatus.ARRIVED:
             return
-        if self._target.matches(situation):
+        if self._target(situation):
             self._settle(GoalStatus.ARRIVED)
             return
         group = self._group_at(situation)
-        if self.plan is not None and self.plan.next is not None:
-            rest = self.plan.after_first()
+        if self.plan:
+            rest = self.plan[1:]
             ids = {rla.rla_id for rla in group}
             as_planned = not ids.isdisjoint(self._next_place)
             self.surprises += not as_planned
-            if as_planned and rest.next is not None and rest.next.rla_id in ids:
+            if as_planned and rest and rest[0].rla_id in ids:
                 self._follow(rest)
                 return
         self._plan_from(group)
 
     def replan(self, situation: Vector) -> None:
         """Plan again from a situation (d,), because the knowledge changed."""
-        self.plan = None
+        self.plan = ()
         self.arrive(situation)
 
     def choose(self, group: tuple[Rla, ...]) -> Rla | None:
         """Return the RLA of the group that the plan uses; None if the plan uses none."""
-        edge = None if self.plan is None else self.plan.next
-        if edge is None:
-            return None
-        return next((rla for rla in group if rla.rla_id == edge.rla_id), None)
+        return next((rla for rla in group if self.plan and rla.rla_id == self.plan[0].rla_id), None)
 
     def plan_step(self) -> bool:
         """Do one tick of planning; return whether planning has ended."""
@@ -228,27 +205,23 @@ class GoalPursuit:
             self._follow(plan)
         return True
 
-    def defer_plan(self) -> None:
-        """Drop a plan that is too late for this junction; the next arrival plans again."""
-        self.plan = None
-
     def _plan_from(self, group: tuple[Rla, ...]) -> None:
         assert self._target is not None
         if not group:
             self._settle(GoalStatus.LOST)
             return
         self._stood_before = self._stood_before or self.standing_status
-        self.status, self.plan = GoalStatus.PLANNING, None
+        self.status, self.plan = GoalStatus.PLANNING, ()
         self._map_builder = MapBuilder(self._begin_map(), self._target)
         self._begun = self._map_done = False
         self._here = group[0].rla_id
 
     def _settle(self, status: GoalStatus) -> None:
         self.status = status
-        self._map_builder = self.plan = self._stood_before = None
+        self._map_builder = self._stood_before = None
+        self.plan = ()
 
     def _follow(self, plan: Plan) -> None:
         self.plan = plan
         assert self._planned_on is not None
-        assert plan.next is not None
-        self._next_place = self._planned_on.members(plan.next.end)
+        self._next_place = self._planned_on.members(plan[0].end)

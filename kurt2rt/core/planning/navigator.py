@@ -13,9 +13,10 @@ from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.planning.goal_pursuit import GoalPursuit
 from kurt2rt.core.planning.target import Target, Vector, distance_function, make_target
-from kurt2rt.core.planning.topological_map import Forecast, MapBuild, build_map
+from kurt2rt.core.planning.topological_map import MapBuild, build_map
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.rla import MID, Rla
+from kurt2rt.core.rla.statistics import Expectation
 
 _CHOICE_DISTANCE_M = 0.3
 """Distance after a junction up to which a plan may choose for the next one; beyond it the robot may turn there."""
@@ -34,7 +35,7 @@ class Navigator:
         self,
         mid: MidLevel,
         follow_ups: Callable[[int], Mapping[int, int]],
-        forecast: Callable[[int], Forecast | None],
+        forecast: Callable[[int], Expectation | None],
     ) -> None:
         """Connect to a mid level. If its situation is a place, known places correct the dead reckoning.
 
@@ -74,11 +75,6 @@ class Navigator:
         """Goal and plan as reported with each tick; None without a goal."""
 
     @property
-    def goal_status(self) -> GoalStatus:
-        """State of the way to the goal; NONE without a goal."""
-        return self._pursuit.status
-
-    @property
     def standing_status(self) -> GoalStatus | None:
         """Reason to stand, ARRIVED or NO_WAY; None to drive."""
         return self._pursuit.standing_status
@@ -93,7 +89,7 @@ class Navigator:
         target = self._target_of(goal)
         self._changes, self._rlas = self._system.changes, self._system.rlas_at(MID)
         self._begin(goal, target)
-        return self.goal_status
+        return self._pursuit.status
 
     def stop(self) -> None:
         """Drop the goal; the nearest mid-level RLA commands again from the next junction on."""
@@ -109,7 +105,7 @@ class Navigator:
         if not isinstance(situation, PlaceSituation):
             raise CommandRefusedError(RefusalCode.NO_PLACES)
         situation.localise(self._named_condition(name))
-        self._pursuit.plan = None
+        self._pursuit.plan = ()
 
     def choose(self, group: tuple[Rla, ...], vector: Vector) -> Rla | None:
         """Return the RLA of the group that the plan uses at a mid-level situation `vector` (d,); None if none.
@@ -137,7 +133,7 @@ class Navigator:
         stands = self._pursuit.stands
         if self._pursuit.plan_step():
             if not stands and self._is_too_late():
-                self._pursuit.defer_plan()
+                self._pursuit.plan = ()  # the next arrival plans again
             self._publish()
 
     def refresh(self) -> None:
@@ -207,17 +203,17 @@ class Navigator:
     def _is_plan_valid(self) -> bool:
         """Return whether the present edge of the plan still exists with its action."""
         plan = self._pursuit.plan
-        if plan is None or plan.next is None:
+        if not plan:
             return True
-        rla = self._system.get(plan.next.rla_id)
-        return rla is not None and rla.action == plan.next.action
+        rla = self._system.get(plan[0].rla_id)
+        return rla is not None and rla.action == plan[0].action
 
     def _is_too_late(self) -> bool:
         """Return whether the robot may already be in the next junction with another action than planned."""
         plan, situation = self._pursuit.plan, self._mid.situation
-        if plan is None or plan.next is None or not isinstance(situation, PlaceSituation):
+        if not plan or not isinstance(situation, PlaceSituation):
             return False
-        return situation.since_m > _CHOICE_DISTANCE_M and plan.next.action != self._mid.commanded
+        return situation.since_m > _CHOICE_DISTANCE_M and plan[0].action != self._mid.commanded
 
     def _is_near_junction(self) -> bool:
         situation = self._mid.situation
@@ -231,11 +227,12 @@ class Navigator:
         group = self._group_at(situation)
         if group:
             return group[0].condition
-        near = [place for place in self.named_situations.values() if self._is_near(situation, place)]
-        return min(near, key=lambda place: self._distance(situation, np.array(place))) if near else None
 
-    def _is_near(self, situation: Vector, place: Condition) -> bool:
-        return self._distance(situation, np.array(place)) <= self._space.radius
+        def away(place: Condition) -> float:
+            return self._distance(situation, np.array(place))
+
+        nearest = min(self.named_situations.values(), key=away, default=None)
+        return nearest if nearest is not None and away(nearest) <= self._space.radius else None
 
     def _build_map(self) -> MapBuild:
         return build_map(self._rlas, self._group_at, self._follow_ups, self._forecast)
@@ -245,7 +242,7 @@ class Navigator:
         if pursuit.goal is None:
             self.status = None
             return
-        edges = () if pursuit.plan is None else pursuit.plan.edges
+        edges = pursuit.plan
         self.status = PlanStep(
             pursuit.goal.text,
             pursuit.status,

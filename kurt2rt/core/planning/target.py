@@ -1,7 +1,6 @@
 """Targets: goals as predicates on mid-level situations."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,57 +16,43 @@ Vector = NDArray[np.float64]
 Distance = Callable[[Vector, Vector], float]
 """Distance of two mid-level situations (d,)."""
 
-
 GroupAt = Callable[[Vector], tuple[Rla, ...]]
 """Function from a situation (d,) to the RLAs on its place, oldest first; empty at an unknown place."""
 
-
-class Target(Protocol):
-    """Goal of the navigator as a test of mid-level situations: whether the robot is there."""
-
-    def matches(self, situation: Vector) -> bool:
-        """Return whether a situation (d,) reaches the goal; False for a lost robot (NaN)."""
-        ...
+Target = Callable[[Vector], bool]
+"""Whether a situation (d,) reaches a goal; False for a lost robot (NaN)."""
 
 
-class NearTarget:
-    """Target: the place of a situation, or its neighbourhood if one of the two places is unknown."""
+def near_target(situation: Condition, within: float, distance: Distance, group_at: GroupAt) -> Target:
+    """Return the target that is the place of a situation, or its neighbourhood if one of the two places is unknown.
 
-    def __init__(self, situation: Condition, within: float, distance: Distance, group_at: GroupAt) -> None:
-        """Resolve the place of a situation; valid until the mid-level RLAs change.
+    It is valid until the mid-level RLAs change. `within`: greatest distance, in m or symbols, if a place is unknown.
+    """
+    wanted = np.array(situation, dtype=np.float64)
+    there = group_at(wanted)
 
-        `within`: greatest distance, in m or symbols, if a place is unknown.
-        """
-        self._situation = np.array(situation, dtype=np.float64)
-        self._within = within
-        self._distance = distance
-        self._group_at = group_at
-        self._there = group_at(self._situation)
-
-    def matches(self, situation: Vector) -> bool:
-        """Return whether a situation (d,) is at the place."""
-        if not np.isfinite(situation).all():
+    def reached(vector: Vector) -> bool:
+        if not np.isfinite(vector).all():
             return False
-        here, there = self._group_at(situation), self._there
+        here = group_at(vector)
         if here and there:
             return here[0].rla_id == there[0].rla_id
-        return self._distance(situation, self._situation) <= self._within
+        return distance(vector, wanted) <= within
+
+    return reached
 
 
-class FeatureTarget:
-    """Goal that names some features, such as a position; situations near it in all of them reach it."""
+def feature_target(wanted: Mapping[int, float], tolerance: float) -> Target:
+    """Return the target of all situations near to some values, such as a position.
 
-    def __init__(self, wanted: Mapping[int, float], tolerance: float) -> None:
-        """`wanted`: index of the feature -> value; `tolerance`: in the unit of the features, such as m."""
-        self._at = list(wanted)
-        self._values = np.array(list(wanted.values()), dtype=np.float64)
-        self._tolerance = tolerance
+    `wanted`: index of the feature -> value; `tolerance`: in the unit of the features, such as m.
+    """
+    at, values = list(wanted), np.array(list(wanted.values()), dtype=np.float64)
 
-    def matches(self, situation: Vector) -> bool:
-        """Return whether the goal's features of a situation (d,) are all within the tolerance."""
-        if not np.isfinite(situation).all():
-            return False
-        return bool((np.abs(situation[self._at] - self._values) <= self._tolerance).all())
+    def reached(vector: Vector) -> bool:
+        return bool(np.isfinite(vector).all() and (np.abs(vector[at] - values) <= tolerance).all())
+
+    return reached
 
 
 def make_target(
@@ -89,19 +74,19 @@ def make_target(
             named = system.named_situations(MID)
             if name not in named:
                 raise CommandRefusedError(RefusalCode.NOT_NAMED, name=name, known=tuple(sorted(named)))
-            return NearTarget(named[name], radius, distance, group_at)
+            return near_target(named[name], radius, distance, group_at)
         case RlaGoal(rla_id):
             rla = system.get(rla_id)
             if rla is None or rla.level != MID:
                 raise CommandRefusedError(RefusalCode.NO_RLA, rla=rla_id)
-            return NearTarget(rla.condition, radius if rla.radius is None else rla.radius, distance, group_at)
+            return near_target(rla.condition, radius if rla.radius is None else rla.radius, distance, group_at)
         case PartialGoal(wanted, tolerance):
             unknown = sorted(name for name, _ in wanted if name not in features)
             if unknown or not wanted:
                 raise CommandRefusedError(
                     RefusalCode.NO_FEATURE, features=tuple(unknown), level=MID, known=tuple(features)
                 )
-            return FeatureTarget({features.index(name): value for name, value in wanted}, tolerance)
+            return feature_target({features.index(name): value for name, value in wanted}, tolerance)
 
 
 def distance_function(space: Space) -> Distance:

@@ -6,33 +6,20 @@ A place is a mid-level situation with all RLAs on it. Each RLA is an edge to the
 from collections import Counter
 from collections.abc import Callable, Collection, Generator, Iterable, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
-from kurt2rt.core.planning.target import GroupAt, Target, Vector
+from kurt2rt.core.planning.target import GroupAt, Target
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.rla import Rla
+from kurt2rt.core.rla.statistics import Expectation
 
 MapBuild = Generator[None, None, "TopologicalMap"]
 """Generator that builds a map; each piece processes one RLA with at most one match."""
 
 _RLAS_PER_PIECE = 8
 """RLAs per piece in stages without a match."""
-
-
-class Forecast(Protocol):
-    """Expectation of one RLA (kurt2rt.core.rla.statistics.Expectation), as far as a map needs it."""
-
-    @property
-    def mean(self) -> Vector:
-        """Expected situation at its end, shape (d,)."""
-        ...
-
-    @property
-    def ticks(self) -> float:
-        """Mean duration until its end, in ticks."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +84,7 @@ def build_map(
     rlas: Iterable[Rla],
     group_at: GroupAt,
     follow_ups: Callable[[int], Mapping[int, int]],
-    forecast: Callable[[int], Forecast | None],
+    forecast: Callable[[int], Expectation | None],
 ) -> MapBuild:
     """Build the map of the mid-level RLAs, which must not change meanwhile; yield after each piece.
 
@@ -106,7 +93,7 @@ def build_map(
     """
     result = TopologicalMap()
     members: dict[Condition, list[Rla]] = {}
-    forecasts: dict[int, Forecast] = {}
+    forecasts: dict[int, Expectation] = {}
     for number, rla in enumerate(rlas):
         members.setdefault(rla.condition, []).append(rla)
         expected = forecast(rla.rla_id)
@@ -145,7 +132,7 @@ def build_map(
 
 def _end_of(
     rla: Rla,
-    expected: Forecast,
+    expected: Expectation,
     group_at: GroupAt,
     home: Mapping[int, int],
     result: TopologicalMap,
@@ -181,6 +168,6 @@ class MapBuilder:
                 self.topological_map = done.value
             yield False
         for place_id, place in self.topological_map.places.items():
-            if target.matches(np.array(place.condition)):
+            if target(np.array(place.condition)):
                 self.goals.add(place_id)
             yield False

@@ -202,7 +202,7 @@ class Reinforcement:
     def _origins(self, punishment: _Punishment, phase: Phase, tick: int) -> OriginOf:
         def origin_of(word: str) -> Origin:
             # The critic's signals have no ids; the number of the lesson makes each id unique.
-            number = f"-{len(self._system.lessons) + 1}" if punishment.teacher == CRITIC else ""
+            number = f"-{len(self._system.history.records) + 1}" if punishment.teacher == CRITIC else ""
             return Origin(f"{punishment.signal}{number}/{word}", punishment.teacher, phase, tick)
 
         return origin_of
@@ -233,9 +233,7 @@ class Reinforcement:
             self._punishments.append(_Punishment(punished, signal, teacher))
 
     def _on_undone(self, lesson: str, origin: Origin) -> None:
-        record = self._system.lesson(lesson)
-        assert record is not None
-        match record.event:
+        match self._system.history.event_of(lesson):
             case RlaRewarded(credits=credits_):
                 self.rule.apply_credits(zip(credits_, self._depths.pop(lesson), strict=True), -1)
                 if self._autonomous is not None:
@@ -259,9 +257,7 @@ class Reinforcement:
 
     def _on_redone(self, lesson: str, origin: Origin) -> None:
         """Apply a redone lesson; a reward has its original credits."""
-        record = self._system.lesson(lesson)
-        assert record is not None
-        match record.event:
+        match self._system.history.event_of(lesson):
             case RlaRewarded(credits=credits_):
                 depths = self._depths[lesson] = _depths(self.rule, credits_)
                 self.rule.apply_credits(zip(credits_, depths, strict=True), 1)

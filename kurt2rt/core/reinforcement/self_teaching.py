@@ -121,10 +121,9 @@ class SelfTeaching:
         for event in events:
             if system.history.why_not_undo(event.lesson) is not None:  # below a teacher's lesson
                 continue
-            record = system.lesson(event.lesson)
-            assert record is not None
-            assert not isinstance(record.event, SituationNamed)  # only teachers give names
-            rla_id = rla_id_of(record.event)
+            lesson = system.history.event_of(event.lesson)
+            assert not isinstance(lesson, SituationNamed)  # only teachers give names
+            rla_id = rla_id_of(lesson)
             was = system.get(rla_id)
             yield event
             rla = system.get(rla_id) or was

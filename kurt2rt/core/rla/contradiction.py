@@ -91,9 +91,8 @@ class GuessedLessons:
         found = self._found.get(rla.rla_id)
         if found is None:
             # Once for each RLA that answers after a change, because it computes all distances.
-            found = hold_of(rla.origin.command_id) is not None and self._differs(rla)
-            self._found[rla.rla_id] = found
+            contradicted = hold_of(rla.origin.command_id) is not None and find_contradiction(
+                self._system, rla, self._groups, of_other_presses=True
+            )
+            found = self._found[rla.rla_id] = bool(contradicted)
         return found
-
-    def _differs(self, rla: Rla) -> bool:
-        return find_contradiction(self._system, rla, self._groups, of_other_presses=True) is not None

@@ -134,9 +134,17 @@ class LessonHistory:
         place = self._place.get(command_id)
         return None if place is None else self._records[place]
 
+    def event_of(self, command_id: str) -> Lesson:
+        """Return the lesson of a command, which must have given one, undone or not. Raises KeyError."""
+        return self._records[self._place[command_id]].event
+
     def of_hold(self, hold: str) -> tuple[str, ...]:
         """Return the command ids of all lessons of a hold, oldest first, undone ones included; empty if it has none."""
         return tuple(self._holds.get(hold, ()))
+
+    def standing_of_hold(self, hold: str) -> list[str]:
+        """Return the command ids of the lessons of a hold that are not undone, oldest first."""
+        return [each for each in self._holds.get(hold, ()) if not self._records[self._place[each]].undone]
 
     def unused_hold_id(self, hold: str) -> str:
         """Return `hold`, or `hold` with the first free number if an earlier run's hold of this id gave lessons."""
@@ -190,7 +198,7 @@ class LessonHistory:
         lessons = self.of_hold(hold)
         if not lessons:
             return Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson=hold)
-        standing = [each for each in lessons if not self._records[self._place[each]].undone]
+        standing = self.standing_of_hold(hold)
         if not standing:
             return Outcome.of(RefusalCode.UNDONE_ALREADY, lesson=hold)
         for command_id in standing:

@@ -5,6 +5,7 @@ RLAs of each level and taught behaviour compete among themselves; ids and the hi
 
 import hashlib
 import math
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
@@ -30,9 +31,9 @@ from kurt2rt.core.rla.events import (
     SituationNamed,
     TeachingEvent,
 )
-from kurt2rt.core.rla.lesson_history import LessonHistory, LessonRecord
+from kurt2rt.core.rla.lesson_history import LessonHistory
 from kurt2rt.core.rla.rla import ASK, BASIC, Origin, Rla
-from kurt2rt.core.rla.statistics import Appraisal, RewardCounts
+from kurt2rt.core.rla.statistics import Appraisal
 
 
 class NamedSituations:
@@ -102,7 +103,8 @@ class RlaSystem(ActiveRlas):
         """Number of applied events; while it is unchanged, equal situations have equal matches."""
         super().__init__({**(others or {}), BASIC: Space(dimensions, radius, self.weights)})
         self._last_id = 0
-        self._rewards = RewardCounts()
+        self._rewards = Counter[tuple[int, bool]]()
+        """Number of standing rewards by RLA id, and whether they are +1."""
         self._names = NamedSituations()
         self.history = LessonHistory()
         """All lessons, and which of them can be undone and redone."""
@@ -122,16 +124,7 @@ class RlaSystem(ActiveRlas):
 
     def appraisal(self, rla_id: int) -> Appraisal:
         """Return the numbers of rewards and punishments of an RLA; zeros for an unknown id."""
-        return self._rewards.get(rla_id)
-
-    @property
-    def lessons(self) -> tuple[LessonRecord, ...]:
-        """All lessons, oldest first, undone ones included."""
-        return self.history.records
-
-    def lesson(self, command_id: str) -> LessonRecord | None:
-        """Return the lesson of a command; None for an unknown id."""
-        return self.history.get(command_id)
+        return Appraisal(self._rewards[rla_id, True], self._rewards[rla_id, False])
 
     def restored_by_undo(self, command_id: str) -> Rla | None:
         """Return the RLA as an undo of a lesson would restore it; None if that undo restores no action."""
@@ -201,7 +194,7 @@ class RlaSystem(ActiveRlas):
                 self._require_active(rla_id)
                 if value not in (1, -1):
                     raise InvalidEventError.of(EventFault.BAD_REWARD, rla_id=rla_id, value=value)
-                self._rewards.add(rla_id, value)
+                self._rewards[rla_id, value > 0] += 1
 
     def _undo(self, lesson: Lesson) -> None:
         """Reverse a lesson that is on top of its stack."""
@@ -214,7 +207,7 @@ class RlaSystem(ActiveRlas):
             case RlaDeleted(_, origin):
                 self._add(self._deleted.pop(origin.command_id))
             case RlaRewarded(rla_id, value):
-                self._rewards.add(rla_id, value, -1)
+                self._rewards[rla_id, value > 0] -= 1
             case SituationNamed():
                 self._names.remove(lesson)
 
@@ -234,9 +227,7 @@ class RlaSystem(ActiveRlas):
 
     def _as_taught_by(self, command_id: str) -> Rla:
         """Return the RLA as a lesson left it that gave or withdrew its action."""
-        record = self.history.get(command_id)
-        assert record is not None
-        match record.event:
+        match self.history.event_of(command_id):
             case RlaCreated(rla):
                 return rla
             case ActionReplaced(rla_id, action, _, origin):

@@ -101,21 +101,6 @@ class Appraisal(NamedTuple):
     punishments: int = 0
 
 
-class RewardCounts:
-    """Numbers of rewards of +1 and -1 that each RLA got; undone rewards are subtracted."""
-
-    def __init__(self) -> None:
-        self._counts: Counter[tuple[int, bool]] = Counter()
-
-    def get(self, rla_id: int) -> Appraisal:
-        """Return the numbers of an RLA; zeros without rewards."""
-        return Appraisal(self._counts[rla_id, True], self._counts[rla_id, False])
-
-    def add(self, rla_id: int, value: int, times: int = 1) -> None:
-        """Count one reward; `value` is -1 or +1, `times` -1 for a reward that was undone."""
-        self._counts[rla_id, value > 0] += times
-
-
 class StatisticsCounter:
     """Counter of uses of RLAs and of transitions between them, per level.
 

@@ -121,20 +121,16 @@ class UndoLessons:
             return self._undo_hold(hold or lesson, origin)
         refuse(self._system.history.why_not_undo(lesson))
         self._require_restorable(lesson)
-        record = self._system.lesson(lesson)
+        record = self._system.history.get(lesson)
         assert record is not None
         return LessonResult(Outcome.of(ResultCode.LESSON_UNDONE, says=record.text), LessonUndone(lesson, origin))
 
     def _undo_hold(self, hold: str, origin: Origin) -> LessonResult:
         """Undo all standing lessons of a hold, newest first; the last undo has the command's own id."""
         refuse(self._system.history.why_not_undo_hold(hold))
-        standing = []
-        for command_id in reversed(self._system.history.of_hold(hold)):
-            record = self._system.lesson(command_id)
-            assert record is not None
-            if not record.undone:
-                self._require_restorable(command_id)
-                standing.append(command_id)
+        standing = self._system.history.standing_of_hold(hold)[::-1]
+        for command_id in standing:
+            self._require_restorable(command_id)
         origins = [replace(origin, command_id=f"{origin.command_id}{DERIVED}{n}") for n in range(1, len(standing))]
         if self._learner is not None:
             self._learner.team.undo_hold(hold)

@@ -192,7 +192,7 @@ def lessons_data(journal: Journal, limit: int | None = None, taught_by: str | No
 def _read_lessons(journal: Journal, taught_by: str | None) -> tuple[list[LessonRecord], dict[str, str], dict[str, str]]:
     """Return the lessons, newest first, and by command id the stamps and the teachers of undos."""
     entries = journal.entries()
-    lessons = fold_entries(journal, entries, radius=math.inf).lessons
+    lessons = fold_entries(journal, entries, radius=math.inf).history.records
     records = [record for record in lessons[::-1] if taught_by in (None, record.event.origin.teacher)]
     stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
     undone_by = {
@@ -239,7 +239,7 @@ def _summary(entries: list[StoredEntry], system: RlaSystem) -> str:
         own = [event for event in events if isinstance(event, change)]
         if own:
             parts.append(f"{len(own)} {name} by {_names(event.origin.teacher for event in own)}")
-    teachers = _names(record.event.origin.teacher for record in system.lessons)
+    teachers = _names(record.event.origin.teacher for record in system.history.records)
     by = f" by {teachers}" if teachers else ""
     summary = (
         f"{_how_many(system)} from {system.history.standing} lessons ({', '.join(parts)}){by}, "

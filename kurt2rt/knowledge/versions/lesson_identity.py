@@ -24,7 +24,7 @@ class LessonKey(NamedTuple):
 def lesson_keys(system: RlaSystem) -> Mapping[str, LessonKey]:
     """Return the key of each lesson, undone ones included, by command id in this file."""
     keys, created = dict[str, LessonKey](), dict[int, str]()
-    for record in system.lessons:
+    for record in system.history.records:
         lesson, about = record.event, ""
         content = _content(lesson)
         if isinstance(lesson, RlaCreated):

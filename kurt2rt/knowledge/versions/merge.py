@@ -88,9 +88,9 @@ class _Merger:
     def bring(self, theirs: RlaSystem, entries: list[StoredEntry]) -> None:
         """Take over the lessons that stand in `theirs`, the fold of `entries`."""
         keys = lesson_keys(self._here)
-        known = {keys[record.event.origin.command_id]: record for record in self._here.lessons}
+        known = {keys[record.event.origin.command_id]: record for record in self._here.history.records}
         keys_there, stamps = lesson_keys(theirs), _stamps(entries)
-        for record in theirs.lessons:
+        for record in theirs.history.records:
             command_id = record.event.origin.command_id
             if record.undone:
                 continue
@@ -140,7 +140,7 @@ class _Merger:
 
     def _origin(self, there: Origin) -> Origin:
         name = f"{self._merge_id}{DERIVED}{first_command_id(there.command_id)}"
-        if self._here.lesson(name) is not None:  # two lessons there have this first id: one came there by a merge
+        if self._here.history.get(name) is not None:  # two lessons there have this first id: one came there by a merge
             name = f"{self._merge_id}{DERIVED}{there.command_id}"
         return replace(there, command_id=name)
 

@@ -168,13 +168,13 @@ def _require_possible(refusal: Outcome | None, where: object) -> None:
 
 def _together(system: RlaSystem, command: str) -> list[str]:
     """Return the command ids of the lessons of a hold or merge, oldest first; empty for one lesson of this id."""
-    command_ids = [record.event.origin.command_id for record in system.lessons]
+    command_ids = [record.event.origin.command_id for record in system.history.records]
     return [] if command in command_ids else [each for each in command_ids if each.startswith(f"{command}{DERIVED}")]
 
 
 def _lessons_to_undo(system: RlaSystem, taught_by: str, path: Path) -> list[str]:
     """Return the command ids of all standing lessons of a teacher, newest first."""
-    standing = [record for record in system.lessons if not record.undone]
+    standing = [record for record in system.history.records if not record.undone]
     own = [record.event.origin.command_id for record in standing if record.event.origin.teacher == taught_by]
     if not own:
         teachers = ", ".join(sorted({record.event.origin.teacher for record in standing}))
@@ -190,7 +190,7 @@ def _undone_by_time(reading: _Reading, taught_by: str) -> list[str]:
         if isinstance(event, LessonUndone):
             undone.pop(event.lesson, None)
             undone[event.lesson] = None
-    records = ((command_id, reading.system.lesson(command_id)) for command_id in reversed(undone))
+    records = ((command_id, reading.system.history.get(command_id)) for command_id in reversed(undone))
     return [
         command_id
         for command_id, record in records
@@ -207,6 +207,6 @@ def _apply(system: RlaSystem, changes: Iterable[LessonUndone | LessonRedone], wh
 
 
 def _record(system: RlaSystem, command_id: str) -> LessonRecord:
-    record = system.lesson(command_id)
+    record = system.history.get(command_id)
     assert record is not None
     return record

@@ -1,26 +1,24 @@
 """Town for plans: named places, and edges taught as mid-level RLAs."""
 
 from collections import Counter
-from typing import NamedTuple
 
 import numpy as np
 
-from kurt2rt.core.planning.target import FeatureTarget, Vector
+from kurt2rt.core.planning.target import Vector, feature_target
 from kurt2rt.core.planning.topological_map import MapBuild, MapBuilder, TopologicalMap, build_map
 from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.statistics import Expectation, pack
 from tests.core.rla.helpers import created
 
 SPACE = Space(3, 0.5, np.array([1.0, 1.0, 0.0]))
 FEATURES = ("x_m", "y_m", "wall_left")
 
 
-class Seen(NamedTuple):
-    """End of an RLA and its duration in ticks (kurt2rt.core.planning.topological_map.Forecast)."""
-
-    mean: Vector
-    ticks: float
+def ended(at: Vector, ticks: float) -> Expectation:
+    """Return the expectation of an RLA that ended at a situation once."""
+    return Expectation("", 1, ticks, pack(at), pack(0 * at))
 
 
 class Town:
@@ -31,7 +29,7 @@ class Town:
         self.walled: set[str] = set()
         self.system = RlaSystem(2, 1.0, others={MID: SPACE})
         self.follow_ups: Counter[tuple[int, int]] = Counter()
-        self.seen: dict[int, Seen] = {}
+        self.seen: dict[int, Expectation] = {}
 
     def at(self, place: str) -> Vector:
         """Return the situation of a place."""
@@ -46,7 +44,7 @@ class Town:
     def way(self, start: str, action: str, end: str, ticks: float = 800.0) -> int:
         """Taught, and gone once."""
         rla_id = self.teach(start, action)
-        self.seen[rla_id] = Seen(self.at(end), ticks)
+        self.seen[rla_id] = ended(self.at(end), ticks)
         return rla_id
 
     def group_at(self, situation: Vector) -> tuple[Rla, ...]:
@@ -60,7 +58,7 @@ class Town:
 
     def chart(self) -> TopologicalMap:
         """Return the complete map."""
-        survey = MapBuilder(self.build_map(), FeatureTarget({}, 0.0))
+        survey = MapBuilder(self.build_map(), feature_target({}, 0.0))
         while not survey.step(1):
             pass
         assert survey.topological_map is not None

@@ -56,9 +56,9 @@ def test_knowledge_hash_differs_by_level_and_withdrawal() -> None:
 )
 def test_ask_is_no_teachable_action(event: TeachingEvent, fault: EventFault) -> None:
     system = system_of(created(1, (0.0, 0.0)), withdrawn(1))
-    before = system.knowledge_hash(), system.lessons, system.next_id
+    before = system.knowledge_hash(), system.history.records, system.next_id
     assert refused_by(system, event).fault is fault
-    assert (system.knowledge_hash(), system.lessons, system.next_id) == before
+    assert (system.knowledge_hash(), system.history.records, system.next_id) == before
 
 
 @examples(60)

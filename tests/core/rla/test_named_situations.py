@@ -17,4 +17,4 @@ def test_named_situation_unfit_for_level_is_refused() -> None:
     knows = system()
     assert refused_by(knows, named("door", (1.0, 2.0), MID)).fault is EventFault.BAD_SITUATION
     assert refused_by(knows, named("door", (1.0, math.nan, 0.0), MID)).fault is EventFault.NOT_FINITE
-    assert knows.lessons == ()
+    assert knows.history.records == ()

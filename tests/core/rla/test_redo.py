@@ -40,7 +40,7 @@ def test_redo_after_undo_restores_the_knowledge(lesson: TeachingEvent) -> None:
     taught = system_of(FIRST, SECOND, lesson)
     again = system_of(FIRST, SECOND, lesson, undone("it"), redone("it"))
     assert again.knowledge_hash() == taught.knowledge_hash()
-    assert (again.rlas, again.lessons, again.next_id) == (taught.rlas, taught.lessons, taught.next_id)
+    assert (again.rlas, again.history.records, again.next_id) == (taught.rlas, taught.history.records, taught.next_id)
     assert again.named_situations("basic") == taught.named_situations("basic")
     assert again.appraisal(1) == taught.appraisal(1)
     assert again.history.last_standing == "it"
@@ -86,7 +86,7 @@ def test_redo_random_sequences_equal_standing_lessons(
     system = RlaSystem(2, 5.0)
     for number, (what, which) in enumerate(steps):
         living = [rla.rla_id for rla in system.rlas]
-        lessons = [record.event.origin.command_id for record in system.lessons]
+        lessons = [record.event.origin.command_id for record in system.history.records]
         event: TeachingEvent = Appraised("good", 1, 1, origin(f"nothing-{number}"))
         if what == 0 or not living:
             event = created(system.next_id, (float(which), 0.0), f"a{number}", command_id=f"c{number}")
@@ -102,7 +102,7 @@ def test_redo_random_sequences_equal_standing_lessons(
         except InvalidEventError:
             assert isinstance(event, type(undone("x")) | LessonRedone)
     standing = RlaSystem(2, 5.0)
-    standing.apply_all(record.event for record in system.lessons if not record.undone)
+    standing.apply_all(record.event for record in system.history.records if not record.undone)
     assert system.rlas == standing.rlas
     assert system.knowledge_hash() == standing.knowledge_hash()
     assert system.history.last_standing == standing.history.last_standing

@@ -28,7 +28,7 @@ def everything(system: RlaSystem) -> tuple[object, ...]:
         system.next_id,
         system.knowledge_hash(),
         system.match(np.zeros(2)),
-        system.lessons,
+        system.history.records,
         system.history.standing,
         system.history.last_standing,
         system.appraisal(1),
@@ -166,7 +166,7 @@ _STEPS = st.lists(st.tuples(st.sampled_from("ccccrdu"), st.integers(0, 40), st.s
 def test_behaviours_in_one_system_equal_separate_systems(steps: list[tuple[str, int, str]]) -> None:
     together, alone = system_of(), {name: system_of() for name in _BEHAVIOURS}
     for count, (act, number, behaviour) in enumerate(steps):
-        name, living, lessons = f"step-{count}", together.rlas, together.lessons
+        name, living, lessons = f"step-{count}", together.rlas, together.history.records
         event: TeachingEvent
         if act == "c":
             point = (number % 5 / 3, number % 2 * 1e-9)  # few places, so that many are equally near

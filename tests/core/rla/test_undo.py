@@ -61,13 +61,13 @@ def test_undo_twice_is_refused() -> None:
 
 def test_lessons_list_all_with_their_state() -> None:
     system = system_of()
-    assert (system.lessons, system.history.standing, system.history.last_standing) == ((), 0, None)
+    assert (system.history.records, system.history.standing, system.history.last_standing) == ((), 0, None)
     praise = rewarded(2)
     system.apply_all([FIRST, SECOND, praise, *session(100), undone("lesson-1")])
-    assert system.lessons == (LessonRecord(FIRST, undone=True), LessonRecord(SECOND), LessonRecord(praise))
+    assert system.history.records == (LessonRecord(FIRST, undone=True), LessonRecord(SECOND), LessonRecord(praise))
     assert (system.history.standing, system.history.last_standing) == (2, "reward-2")
-    assert system.lesson("lesson-1") == LessonRecord(FIRST, undone=True)
-    assert system.lesson("begin") is None
+    assert system.history.get("lesson-1") == LessonRecord(FIRST, undone=True)
+    assert system.history.get("begin") is None
     system.apply(undone("reward-2"))
     assert (system.history.standing, system.history.last_standing) == (1, "lesson-2")
     system.apply(undone("lesson-2"))
@@ -85,8 +85,8 @@ def lessons_and_undos(steps: list[tuple[str, int, str]], system: RlaSystem) -> I
         command_id = f"step-{number}"
         living = system.rlas
         if act == "u":
-            if system.lessons:
-                yield undone(system.lessons[-1 - which % len(system.lessons)].event.origin.command_id)
+            if system.history.records:
+                yield undone(system.history.records[-1 - which % len(system.history.records)].event.origin.command_id)
         elif act == "c":
             # Few places, so that many RLAs are equally near; one so far off that float32 gives up.
             point = (1e20, 0.0) if which == 30 else (which % 3 / 3, which % 2 * 1e-9)
@@ -112,7 +112,7 @@ def test_undo_random_sequences_equal_standing_lessons(steps: list[tuple[str, int
             system.apply(event)
         except InvalidEventError:
             continue
-        for record in system.lessons:
+        for record in system.history.records:
             name = record.event.origin.command_id
             if not record.undone:
                 standing[name] = record.event
@@ -126,7 +126,7 @@ def test_undo_random_sequences_equal_standing_lessons(steps: list[tuple[str, int
     assert [system.appraisal(rla.rla_id) for rla in system.rlas] == [
         direct.appraisal(rla.rla_id) for rla in direct.rlas
     ]
-    assert (system.history.standing, len(system.lessons)) == (len(standing), len(standing) + undos)
+    assert (system.history.standing, len(system.history.records)) == (len(standing), len(standing) + undos)
     assert system.history.last_standing == (list(standing)[-1] if standing else None)
     for situation in ([0.0, 0.0], [1 / 3, 0.0], [0.4, 1e-9], [3e19, 0.0], [-7.0, 1e5]):
         assert system.match(np.array(situation)) == direct.match(np.array(situation))  # bit for bit

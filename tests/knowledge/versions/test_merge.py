@@ -91,7 +91,7 @@ def left_out(merged: MergeResult) -> list[str]:
 
 
 def brought(path: Path, merged: MergeResult) -> list[LessonRecord]:
-    lessons = folded(path).lessons
+    lessons = folded(path).history.records
     return [each for each in lessons if each.event.origin.command_id.startswith(f"{merged.merge_id}/")]
 
 
@@ -228,9 +228,9 @@ def teach(path: Path, whose: str, steps: Iterable[Step]) -> None:
     system = folded(path)
     taught = list[TeachingEvent]()
     for number, (what, which) in enumerate(steps):
-        name = f"{whose}-{len(system.lessons)}-{number}"
+        name = f"{whose}-{len(system.history.records)}-{number}"
         living = [rla.rla_id for rla in system.rlas]
-        lessons = [record.event.origin.command_id for record in system.lessons]
+        lessons = [record.event.origin.command_id for record in system.history.records]
         one = living[which % len(living)] if living else 0
         lesson = lessons[which % len(lessons)] if lessons else "nothing"
         event: TeachingEvent
@@ -273,9 +273,11 @@ def test_merge_random_files_fit_once_and_then_change_nothing(
     merged = merge(mine, theirs)
     after, other = folded(mine), folded(theirs)
     keys, keys_there = lesson_keys(after), lesson_keys(other)
-    standing = {command_id for command_id in keys_there if (found := other.lesson(command_id)) and not found.undone}
+    standing = {
+        command_id for command_id in keys_there if (found := other.history.get(command_id)) and not found.undone
+    }
     assert {keys_there[each] for each in standing - set(left_out(merged))} <= set(keys.values())
-    assert after.lessons[: len(before.lessons)] == before.lessons
+    assert after.history.records[: len(before.history.records)] == before.history.records
     once = events(mine)
     assert merge(mine, theirs).lessons == 0
     assert events(mine) == once

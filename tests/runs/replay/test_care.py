@@ -76,7 +76,7 @@ def lessons(recordings: Path) -> list[TeachingEvent]:
     replay = Replay(read_run(path))
     for entry in replay.run.entries():
         replay.step(entry)
-    return [record.event for record in replay.runtime.level.system.lessons if not record.undone]
+    return [record.event for record in replay.runtime.level.system.history.records if not record.undone]
 
 
 def unneeded(lessons: list[TeachingEvent], number: int = 1) -> RlaCreated:
