@@ -17,11 +17,10 @@ from kurt2rt.core.lesson_speed import SLOWEST
 from kurt2rt.core.mid.settings import MidSettings
 from kurt2rt.core.phase_settings import PhasesSettings
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings
+from kurt2rt.core.settings_fields import Name, Sentence, Share, or_left_out
 from kurt2rt.core.teacher_settings import QUICK_TEACHER, TeacherProfile, load_teacher
 
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
-Share = Annotated[float, Field(ge=0, le=1)]
-Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 CriticName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*(/[a-z][a-z0-9_]*)?$", max_length=128)]
 AnyCritic = Annotated[
     Annotated[CriticName, Tag("name")] | Annotated[CriticSettings, Tag("settings")],
@@ -31,11 +30,13 @@ AnyMid = Annotated[
     Annotated[Name, Tag("name")] | Annotated[MidSettings, Tag("settings")],
     Discriminator(lambda mid: "settings" if isinstance(mid, dict | MidSettings) else "name"),
 ]
-Sentence = Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f]+$", max_length=120)]
 
 Place = Literal["starts", "in_sight"]
 """Pose to set the robot down at: a start pose, or a random free one in sight of something near (a post, if there are
 posts)."""
+
+
+_NO_DOUBT = or_left_out("settings, or leave the key out for a robot without doubt")
 
 
 def _each_once(names: tuple[str, ...]) -> tuple[str, ...]:
@@ -73,15 +74,8 @@ class LearningSettings(Settings):
     minimum_action_s: Annotated[float, Field(ge=0, le=5)]
     teacher_delay_s: Annotated[float, Field(ge=0, le=2)] = 1.0
     """Time between a situation and a person's press about it, until four answers have shown the teacher's own."""
-    doubt: DoubtSettings | None = None
+    doubt: Annotated[DoubtSettings | None, _NO_DOUBT] = None
     """Doubt, by which the robot asks also inside the radius; None: it asks only outside."""
-
-    @field_validator("doubt", mode="before")
-    @classmethod
-    def _has_a_value(cls, doubt: object) -> object:
-        if doubt is None:
-            raise ValueError("give settings, or leave the key out for a robot without doubt")
-        return doubt
 
 
 class PaperDefaults(LearningSettings):
@@ -97,7 +91,7 @@ class PaperDefaults(LearningSettings):
     answers_override_holds: Literal[False] = False
     skip_uncertain_lessons: Literal[False] = False
     minimum_action_s: Annotated[float, Field(ge=0, le=0)] = 0.0
-    doubt: None = None
+    doubt: Annotated[None, _NO_DOUBT] = None
 
 
 class TeacherSettings(Settings):
@@ -212,7 +206,9 @@ class TaskSettings(Settings):
     repertoire: str
     behaviours: Annotated[tuple[Name, ...], Field(min_length=1, max_length=64), AfterValidator(_each_once)] = ("",)
     """Taught behaviours, each with its own RLAs; the first is active at the start. A single unnamed one by default."""
-    mid: AnyMid | None = None
+    mid: Annotated[
+        AnyMid | None, or_left_out("a name or settings, or leave the key out where there is no mid level")
+    ] = None
     """Mid level, which selects the behaviours: a name in `config/mid_levels`, or its settings; None: the teacher
     selects."""
     learning: LearningSettings
@@ -221,9 +217,14 @@ class TaskSettings(Settings):
     reinforcement: ReinforcementSettings = ReinforcementSettings()
     critic: AnyCritic = "basic"
     """Critic, which is taught in phase 4: a name in `config/critics`, or of a robot's plug-in, or its settings."""
-    judge: AnyJudgeSettings | None = None
+    judge: Annotated[
+        AnyJudgeSettings | None, or_left_out("its settings, or leave the key out where nothing is judged")
+    ] = None
     """Judge by which the scripted teacher gives rewards; None: it gives none."""
-    phases: PhasesSettings | None = None
+    phases: Annotated[
+        PhasesSettings | None,
+        or_left_out("its settings, or leave the key out where phases 3 to 5 are not tried out"),
+    ] = None
     """Settings of the study of phases 3 to 5; None: there is none."""
     policy: AnyPolicySettings
     metric: AnyMetricSettings
@@ -244,25 +245,9 @@ class TaskSettings(Settings):
     @field_validator("mid")
     @classmethod
     def _commands_what_has_a_name(cls, mid: AnyMid | None, others: ValidationInfo) -> AnyMid | None:
-        if mid is None:
-            raise ValueError("give a name or settings, or leave the key out where there is no mid level")
         if others.data.get("behaviours") == ("",):
             raise ValueError("a mid level commands behaviours by their names; give the task's in `behaviours`")
         return mid
-
-    @field_validator("judge", mode="before")
-    @classmethod
-    def _named_or_left_out(cls, judge: object) -> object:
-        if judge is None:
-            raise ValueError("give its settings, or leave the key out where nothing is judged")
-        return judge
-
-    @field_validator("phases")
-    @classmethod
-    def _given_or_left_out(cls, phases: PhasesSettings | None) -> PhasesSettings | None:
-        if phases is None:
-            raise ValueError("give its settings, or leave the key out where phases 3 to 5 are not tried out")
-        return phases
 
     @field_validator("policy")
     @classmethod

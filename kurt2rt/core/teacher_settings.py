@@ -4,20 +4,18 @@ import random
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field
 
 from config.settings import Settings, load_settings
 from config.settings_files import find_config
 from kurt2rt.core.lesson_speed import SLOWEST
+from kurt2rt.core.settings_fields import Name, Sentence, Share, or_left_out
 
 SUPERHUMAN = "superhuman"
 """Teacher without a person's limits, whose times are those of the task (`teaching.teacher`)."""
 
-Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
-Sentence = Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f]+$", max_length=120)]
 LONGEST_S = 60.0
 Seconds = Annotated[float, Field(ge=0, le=LONGEST_S)]
-Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class LogNormalDelay(Settings):
@@ -146,15 +144,10 @@ class TeacherProfile(Settings):
     press by the teacher's delay, as the robot has measured it; or the present one."""
     hold_s: Annotated[float, Field(gt=0, le=60)] = 2.0
     """Time for which an action is held."""
-    person: PersonSettings | None = None
+    person: Annotated[
+        PersonSettings | None, or_left_out("a person's limits, or leave the key out for the times of the task")
+    ] = None
     """Limits of a person; None: reaction, patience and errors are those of the task."""
-
-    @field_validator("person", mode="before")
-    @classmethod
-    def _has_a_value(cls, person: object) -> object:
-        if person is None:
-            raise ValueError("give a person's limits, or leave the key out for the times of the task")
-        return person
 
 
 QUICK_TEACHER = TeacherProfile(

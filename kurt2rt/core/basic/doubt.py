@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, model_validator
 
 from behaviors.behaviour import Behaviour, DrivesOn, HasSetPoints
 from config.settings import Settings
@@ -17,6 +17,7 @@ from kurt2rt.core.perception.definition import Reading, SituationDefinition
 from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.rla import BASIC, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.settings_fields import or_left_out
 
 _AHEAD_DEG = 60.0
 """A sensor looks ahead if its heading is nearer than this to the robot's: KURT2 has five such sensors."""
@@ -46,15 +47,11 @@ class DoubtSettings(Settings):
     """Stand and ask at a doubt; False only tells the score."""
     alone: bool = False
     """Stand at a doubt if no teacher can be asked, too: in phase 5 and exams."""
-    contact: ContactSettings | None = None
+    contact: Annotated[
+        ContactSettings | None,
+        or_left_out("settings, or leave the key out for a robot that remembers no obstacles"),
+    ] = None
     """Remembered obstacles; an action that meets one is doubted by the threshold. None: none are remembered."""
-
-    @field_validator("contact", mode="before")
-    @classmethod
-    def _has_a_value(cls, contact: object) -> object:
-        if contact is None:
-            raise ValueError("give settings, or leave the key out for a robot that remembers no obstacles")
-        return contact
 
     @model_validator(mode="after")
     def _rare_is_beyond_usual(self) -> Self:

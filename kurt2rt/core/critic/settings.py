@@ -16,6 +16,7 @@ from config.settings import Settings, load_settings
 from config.settings_files import find_config
 from hal.robot_settings import InfraredSettings, RobotSettings, SensorSettings
 from kurt2rt.core.rla.condition import LevelFeatures
+from kurt2rt.core.settings_fields import Metres, Name, Share
 
 Sensors = Annotated[tuple[str, ...], Field(min_length=1)]
 
@@ -61,10 +62,7 @@ class SideSectors(Settings):
 
 
 Seconds = Annotated[float, Field(gt=0, le=100_000)]
-Metres = Annotated[float, Field(gt=0, le=10)]
-Share = Annotated[float, Field(ge=0, le=1)]
 Weight = Annotated[float, Field(ge=0, le=1000)]
-Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 
 *_ALWAYS, CIRCLING, GRAZING, SPUN = AppraisalFeatures._fields
 NAMES = tuple(_ALWAYS)

@@ -17,6 +17,7 @@ from kurt2rt.core.rla.events import (
     RlaDeleted,
     TeachingEvent,
 )
+from kurt2rt.core.rla.lesson_history import LessonHistory
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Expectation, pack
 
@@ -136,15 +137,9 @@ class Expectations:
             self._learned[rla_id] = _updated(before, deviation, end)
         return surprise
 
-    def on_event(self, event: TeachingEvent) -> int | None:
-        """Drop the expectation of the RLA whose action an applied event changed.
-
-        Returns the id of that RLA, which may have had no expectation; None if the event changes no action.
-        """
-        if isinstance(event, LessonUndone | LessonRedone):
-            record = self._system.history.get(event.lesson)
-            return None if record is None else self._forget(record.event)
-        return self._forget(event)
+    def forget(self, rla_id: int) -> None:
+        """Drop the expectation of an RLA whose action was changed; it may have none."""
+        self._learned.pop(rla_id, None)
 
     def snapshot(self) -> dict[int, Expectation]:
         """Return all expectations by RLA id; unchanged ones are the same objects as in the last call."""
@@ -172,19 +167,14 @@ class Expectations:
             surprising=surprising,
         )
 
-    def _forget(self, event: TeachingEvent) -> int | None:
-        rla_id = affected_rla(event)
-        if rla_id is None:
-            return None
-        self._learned.pop(rla_id, None)
-        return rla_id
 
+def affected_rla(event: TeachingEvent, history: LessonHistory) -> int | None:
+    """Return the id of the RLA whose action an applied event creates, changes or ends; None for other events.
 
-def affected_rla(event: TeachingEvent) -> int | None:
-    """Return the id of the RLA whose action an event creates, changes or ends; None for other events.
-
-    Its expectation and counted transitions are not valid any more.
+    Its expectation and counted transitions are not valid any more. `history`: lessons that an undo or redo names.
     """
+    if isinstance(event, LessonUndone | LessonRedone):
+        event = history.event_of(event.lesson)
     match event:
         case RlaCreated(rla):
             return rla.rla_id

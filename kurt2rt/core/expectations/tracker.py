@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
-from kurt2rt.core.expectations.expectations import End, Expectations, Surprise
+from kurt2rt.core.expectations.expectations import End, Expectations, Surprise, affected_rla
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.condition import Space
@@ -52,15 +52,11 @@ class BasicTransitionTracker:
         """Forget the driving RLA: the next one is no follow-up."""
         self._driver = None
 
-    def on_event(self, event: TeachingEvent) -> int | None:
-        """Drop the expectation of the basic RLA whose action an applied event changed.
-
-        Returns the id of that RLA; None if the event changes no action.
-        """
-        changed = self.expectations.on_event(event)
-        if changed is not None and changed == self._driver:
+    def forget(self, rla_id: int) -> None:
+        """Drop the expectation of an RLA whose action was changed."""
+        self.expectations.forget(rla_id)
+        if rla_id == self._driver:
             self.restart()
-        return changed
 
 
 class MidTransitionTracker:
@@ -112,15 +108,11 @@ class MidTransitionTracker:
         self._commander = self._before = None
         self._driven_ticks = 0
 
-    def on_event(self, event: TeachingEvent) -> int | None:
-        """Drop the expectation of the mid-level RLA whose action an applied event changed.
-
-        Returns the id of that RLA; None if the event changes no action.
-        """
-        changed = self.expectations.on_event(event)
-        if changed is not None and changed in (self._commander, self._before):
+    def forget(self, rla_id: int) -> None:
+        """Drop the expectation of an RLA whose action was changed."""
+        self.expectations.forget(rla_id)
+        if rla_id in (self._commander, self._before):
             self.restart()
-        return changed
 
 
 class ExpectationTracker:
@@ -201,9 +193,12 @@ class ExpectationTracker:
 
         Returns its id, because its counted transitions are invalid too; None for new RLAs and other events.
         """
-        changed = self._basic.on_event(event)
+        changed = affected_rla(event, self._system.history)
+        if changed is None:
+            return None
+        self._basic.forget(changed)
         if self._mid_transitions is not None:
-            changed = self._mid_transitions.on_event(event) or changed
+            self._mid_transitions.forget(changed)
         return None if isinstance(event, RlaCreated) else changed
 
     def restart(self) -> None:

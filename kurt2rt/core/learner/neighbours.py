@@ -12,12 +12,16 @@ _SHARPNESS = 10.0
 """Distance of R / 10 more makes a vote lighter by a factor e."""
 
 
-class NearestNeighbour(LabelLearner):
-    """1-NN without R: it asks before its first lesson and never again, so all else is taught by corrections."""
+class _Comparing(LabelLearner):
+    """Base of learners that compare a point with all labels."""
 
     def fit(self, points: Points, actions: Sequence[str]) -> None:  # noqa: ARG002 - distances take the points
         """Keep the actions of the points (n, d)."""
         self._said = list(actions)
+
+
+class NearestNeighbour(_Comparing):
+    """1-NN without R: it asks before its first lesson and never again, so all else is taught by corrections."""
 
     def choose(self, point: Points, *, taught: bool) -> str | None:  # noqa: ARG002 - it never asks
         """Return the action of the label nearest to a point (d,); of equally near ones the newest."""
@@ -25,15 +29,11 @@ class NearestNeighbour(LabelLearner):
         return self._said[::-1][int(newest_first.argmin())]
 
 
-class KNearest(LabelLearner):
+class KNearest(_Comparing):
     """k-NN with k = 5: the action with most votes, of equal ones that of the nearest.
 
     It asks if the nearest label is farther than the gate times R; gate 1 by default.
     """
-
-    def fit(self, points: Points, actions: Sequence[str]) -> None:  # noqa: ARG002 - distances take the points
-        """Keep the actions of the points (n, d)."""
-        self._said: list[str] = list(actions)
 
     def choose(self, point: Points, *, taught: bool) -> str | None:
         """Return the action of most of the labels nearest to a point (d,); None if all are far."""

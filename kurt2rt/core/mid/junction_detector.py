@@ -11,8 +11,8 @@ from hal.odometry import WheelOdometry
 from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
 from kurt2rt.core.decision.decision import JunctionEvent
+from kurt2rt.core.settings_fields import Metres
 
-Metres = Annotated[float, Field(gt=0, le=10)]
 Sensors = Annotated[tuple[str, ...], Field(min_length=2)]
 
 _QUARTER_RAD = math.pi / 2

@@ -19,6 +19,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.core.decision.decision import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector, JunctionDetectorSettings
 from kurt2rt.core.rla.condition import LevelFeatures, Metric, Space
+from kurt2rt.core.settings_fields import Name, Share
 
 
 class MidSituation(Protocol):
@@ -88,10 +89,6 @@ def _checked(given: object) -> MidSituationSettings:
 
 AnyMidSituationSettings = Annotated[SerializeAsAny[MidSituationSettings], PlainValidator(_checked)]
 """Schema type: settings of the kind that a file names."""
-
-
-Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
-Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class MidLearningSettings(Settings):

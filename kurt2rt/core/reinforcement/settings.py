@@ -5,9 +5,9 @@ from typing import Annotated
 from pydantic import Field
 
 from config.settings import Settings
+from kurt2rt.core.settings_fields import Share
 
 _Seconds = Annotated[float, Field(gt=0, le=1000)]
-_Share = Annotated[float, Field(ge=0, le=1)]
 _Value = Annotated[float, Field(ge=-1, le=1)]
 
 
@@ -22,7 +22,7 @@ class ValueSettings(Settings):
     """Value below which a punished RLA is repaired."""
     well_above: _Value
     """Value above which an RLA is healthy: it can replace a competitor, and votes as a neighbour."""
-    blamed_share: _Share
+    blamed_share: Share
     """Least share of a punishment's trace for a repair."""
 
 
@@ -33,7 +33,7 @@ class TaughtValues(ValueSettings):
     highest_value: _Value | None = 0.0
     sunk_below: _Value = -0.1
     well_above: _Value = -0.1
-    blamed_share: _Share = 0.1
+    blamed_share: Share = 0.1
 
 
 class AutonomousValues(ValueSettings):
@@ -42,7 +42,7 @@ class AutonomousValues(ValueSettings):
     first_value: _Value = 0.5
     sunk_below: _Value = -0.2
     well_above: _Value = -0.1
-    blamed_share: _Share = 0.02
+    blamed_share: Share = 0.02
 
 
 class ReinforcementSettings(Settings):
@@ -50,9 +50,9 @@ class ReinforcementSettings(Settings):
 
     trace_s: _Seconds = 0.7
     """Time constant of the eligibility trace of a teacher's reward."""
-    alpha: _Share = 0.3
+    alpha: Share = 0.3
     """Step size of values."""
-    gamma: _Share = 0.9
+    gamma: Share = 0.9
     """Discount of the next RLA's value per step."""
     step_s: _Seconds = 0.1
     """Time between two steps of temporal difference learning."""
@@ -60,7 +60,7 @@ class ReinforcementSettings(Settings):
     """Values of phases 1 to 4."""
     alone: AutonomousValues = AutonomousValues()
     """Values of phase 5."""
-    epsilon: _Share = 0.02
+    epsilon: Share = 0.02
     """Share of the choices among competitors that are random."""
     hold_s: Annotated[float, Field(ge=0, le=1000)] = 1.0
     """Time without being nearest after which a choice among competitors ends; a punishment ends it at once."""

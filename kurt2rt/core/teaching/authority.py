@@ -66,6 +66,10 @@ class StopRecord:
         return Outcome.of(RefusalCode.STOPPED_BY, teachers=others) if others else None
 
 
+_LEASE_TICKS = 24
+"""Validity of a message from its arrival."""
+_PICTURE_TICKS = 35
+"""Validity of a message from the state that its teacher saw when giving it."""
 _BY_HAND = "by hand"
 
 
@@ -76,24 +80,18 @@ class ControlAuthority:
     another one gets it only by `take_over` or `hand_over`.
     """
 
-    def __init__(
-        self, repertoire: Repertoire, *, attended: bool, lease_ticks: int = 24, max_picture_age_ticks: int = 35
-    ) -> None:
+    def __init__(self, repertoire: Repertoire, *, attended: bool) -> None:
         """Start without a teacher.
 
         Args:
             repertoire: actions that the teacher can run; used by nothing else.
             attended: whether the robot drives by its RLAs only while a teacher is present.
-            lease_ticks: validity of a message from its arrival.
-            max_picture_age_ticks: validity of a message from the state that the teacher saw when giving it.
         """
         self.attended = attended
         self.teacher: str | None = None
         self.speed = 1
         """Robot seconds in one second. A lease lasts real time, so it is longer in robot time by this factor."""
         self._repertoire = repertoire
-        self._lease_ticks = lease_ticks
-        self._max_picture_age_ticks = max_picture_age_ticks
         self._present_until = -1
         self._press_ids: dict[str, int] = {}
         self._ended_press_ids: dict[str, int] = {}
@@ -279,7 +277,7 @@ class ControlAuthority:
 
         `seen_tick`: tick of the state that the teacher saw when giving it.
         """
-        return min(tick + self._lease_ticks * self.speed, seen_tick + self._max_picture_age_ticks * self.speed)
+        return min(tick + _LEASE_TICKS * self.speed, seen_tick + _PICTURE_TICKS * self.speed)
 
 
 def name_refusal(name: str) -> Outcome | None:

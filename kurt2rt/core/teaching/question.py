@@ -14,6 +14,9 @@ from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.rla import ASK, MID, rla_title
 
+_MOST_DIFFERING = 5
+"""Features in a question."""
+
 
 class FeatureDifference(NamedTuple):
     """Feature by which a question explains itself: its value here, and in the nearest RLA's condition."""
@@ -122,7 +125,6 @@ def ask(
     weights: NDArray[np.float64],
     feature_names: tuple[str, ...],
     behaviour: str = "",
-    most: int = 5,
     words: SensorWords = NO_WORDS,
 ) -> Question:
     """Return the basic level's question about a situation whose nearest RLA of `behaviour` is `match`.
@@ -133,14 +135,13 @@ def ask(
         weights: shape (d,), with which the match was found.
         feature_names: name of each of the d features.
         behaviour: active taught behaviour.
-        most: largest number of differing features in the question.
         words: texts for features.
     """
     if match is None:
         return Question(None, None, float("inf"), 0.0, (), behaviour, words)
     condition = np.array(match.rla.condition)
     differences = np.abs(situation - condition) * weights
-    order = np.argsort(-differences, kind="stable")[:most]
+    order = np.argsort(-differences, kind="stable")[:_MOST_DIFFERING]
     differing = tuple(
         FeatureDifference(feature_names[i], float(situation[i]), float(condition[i]))
         for i in order

@@ -11,7 +11,8 @@ from pydantic import Field, model_validator
 
 from config.settings import Settings, SettingsError, load_settings
 from config.settings_files import find_config
-from kurt2rt.core.task_settings import Name, TaskSettings, load_task, taught_by
+from kurt2rt.core.settings_fields import Name
+from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import TeacherProfile
 from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.study.jobs import SEED, world_of

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from kurt2rt.core.expectations.expectations import End, Expectations, Surprise
+from kurt2rt.core.expectations.expectations import End, Expectations, Surprise, affected_rla
 from kurt2rt.core.rla.condition import Metric, Space
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import BASIC, MID
@@ -33,7 +33,10 @@ class Small:
     def happens(self, event: TeachingEvent) -> int | None:
         """Apply a lesson to system and expectations."""
         self.system.apply(event)
-        return self.expectations.on_event(event)
+        changed = affected_rla(event, self.system.history)
+        if changed is not None:
+            self.expectations.forget(changed)
+        return changed
 
     def expected(self, rla_id: int) -> Expectation:
         """Return the expectation of an RLA that has ended."""
