@@ -17,15 +17,12 @@ class ResultCode(TextCode):
     """Code of the effect of an accepted command, with its text; its fields are in the `Outcome`."""
 
     REPEATED = ("repeated", "received before; counted once")
-    """A command of this id was applied before; it counts once."""
     # Control authority and driving.
     TAKEN = ("taken", "{teacher} teaches")
     HANDED_OVER = ("handed over", "{teacher} teaches now")
     RELEASED = ("released", "the robot has no teacher now")
-    """The robot has no teacher now."""
     STOPPED = ("stopped", "the robot stands {until_go}")
     RELEASE_SUPERSEDED = ("release superseded", "that press is over; a later one drives")
-    """A later press than the released one drives."""
     HOLD_RELEASED = ("hold released", "let go; lessons: {lessons}")
     """The robot goes on by its RLAs; `lesson` names the lessons of the hold, if it gave any."""
     RESUMED = ("resumed", "the robot may drive")
@@ -48,14 +45,11 @@ class ResultCode(TextCode):
     SITUATION_NAMED = ("situation named", "situation named: {name}")
     RLA_TAUGHT = ("rla taught", "{title} taught: {action}")
     RLA_ADDED = ("rla added", "{title} taught next to RLA {next_to}: {action}")
-    """Competitor on the condition of other RLAs."""
     RLA_CORRECTED = ("rla corrected", "{title} corrected: {action} instead of {was}")
     RLA_ANSWERED = ("rla answered", "{title} answered again: {action}")
     """Answer to an RLA whose action had been withdrawn."""
     RLA_AGREES = ("rla agrees", "{title} says {action} already")
-    """The RLA has this action already; nothing was changed."""
     RLA_CONFLICTS = ("rla conflicts", "{title} says {action} there already; nothing was changed")
-    """Another RLA on its condition has this action already; nothing was changed."""
     DEMONSTRATION_TAUGHT = (
         "demonstration taught",
         "what you showed is taught: {situations} situations in {segments} segments",
@@ -86,7 +80,6 @@ class RefusalCode(TextCode):
     # Control authority.
     ANOTHER_TEACHES = ("another teaches", "{teacher} teaches now; ask to be handed over to, or {take}")
     DRIVES_BY_HAND = ("drives by hand", "{teacher} drives by hand just now; stop the robot first")
-    """The teacher drives manually, so no other teacher can take the robot."""
     NO_TEACHER = ("no teacher", "the robot has no teacher; {take} first")
     CRITICS_NAME = ("critic's name", "{name} is the name of the robot's own critic; teach under another name")
     TEACHER_ABSENT = ("teacher absent", "a behaviour runs only while its teacher is there and watches")
@@ -99,7 +92,6 @@ class RefusalCode(TextCode):
     STOPPED_SINCE = ("stopped since", "the robot was stopped after this command; {look}, then repeat the command")
     STOPPED_BY = ("stopped by", "{teachers} stopped the robot; {go} first")
     ROBOT_STOPPED = ("robot stopped", "the robot is stopped, so no action can be held; {go} first")
-    """A stop lasts until a resume, so that no action is held."""
     PRESS_OVER = ("press over", "this press is over; {press}")
     JUNCTION_PASSED = ("junction passed", "a junction was passed after this command; {look}, then repeat the command")
     GOAL_SINCE = ("goal since", "another goal was given after this command; {look}, then repeat the command")
@@ -122,7 +114,6 @@ class RefusalCode(TextCode):
     NO_CRITIC = ("no critic", "this robot has no critic")
     NO_PLACE = ("no place", "there is no place {name!r}; places are: {known}, or an RLA's own such as RLA 12")
     NO_PLACES = ("no places", "this robot's mid level does not know places")
-    """The mid level knows no places."""
     NOT_NAMED = ("not named", "nothing has the name {name!r}; names are: {known}")
     BAD_NAME = ("bad name", "{name!r} cannot name a situation; give 1 to {longest} letters on one line")
     NO_FEATURE = ("no feature", "{features} cannot be sought; level {level} knows: {known}")
@@ -130,21 +121,15 @@ class RefusalCode(TextCode):
     NO_SESSION = ("no session", "no session is on")
     # Lessons.
     BLIND = ("blind", "the range sensors are silent, so there is no situation; wait for their readings")
-    """The infra-red sensors are silent."""
     WAS_BLIND = ("was blind", "the range sensors were silent then, so there is no situation")
-    """The infra-red sensors were silent in the named tick."""
     NO_DEMONSTRATION = ("no demonstration", "there is no drive by hand to teach; drive by hand and let go first")
     """It was taught already, another press began, or the robot is still driven."""
     NO_SEGMENT = ("no segment", "the drive by hand has {segments} segments; name some of them")
     PLACE_UNKNOWN = ("place unknown", "the robot does not know where it is; say where it is first")
     NO_OTHER_WAY = ("no other way", "another possibility is taught at the mid level; the basic level does one thing")
-    """The basic level has one action per situation."""
     SAYS_SO = ("says so", "{title} says {action} there already; delete RLA {delete} instead")
-    """Another RLA on its condition has this action already."""
     NO_RLA_DECIDES = ("no rla decides", "the learner that decides has no RLAs; teach it, or undo a lesson")
-    """A learner that is no RLA system decides, and has no RLAs to change."""
     NO_SIGNALS = ("no signals", "the learner that decides does not learn from rewards; answer or correct it")
-    """A learner that is no RLA system decides, and does not learn from rewards."""
     NO_RLA_DROVE = ("no rla drove", "no RLA drove the robot then; there is nothing to reward or to punish")
     OUTSIDE_RADIUS = (
         "outside radius",
@@ -153,15 +138,12 @@ class RefusalCode(TextCode):
     DROVE_SLOWLY = ("drove slowly", "the robot drove slowly then; reward and appraise what it does at full speed")
     """The named tick was part of a slow lesson, of which values and critic learn nothing."""
     NO_LESSON_SPEED = ("no lesson speed", "lessons drive at {least} to 100 % of the full speed (got {percent} %)")
-    """The lesson speed is out of its range."""
     NO_LESSON = ("no lesson", "there is no lesson to undo")
     NO_SUCH_LESSON = ("no such lesson", "there is no lesson {lesson!r}")
     UNDONE_ALREADY = ("undone already", "lesson {lesson!r} was undone already")
     STANDS_ALREADY = ("stands already", "lesson {lesson!r} is not undone; there is nothing to redo")
     TAUGHT_AFTER = ("taught after", "lesson {later!r} came after {lesson!r} ({says}); undo it first")
-    """A later lesson is above this one in its stack."""
     TAUGHT_INSTEAD = ("taught instead", "lesson {later!r} replaced {lesson!r} ({says}); undo it first")
-    """Another lesson took its place in the stack."""
     STANDS_ON_UNDONE = ("stands on undone", "{lesson!r} was taught after {earlier!r} ({says}); redo {earlier!r} first")
     ACTION_NOT_IN_TASK = (
         "action not in task",
@@ -204,9 +186,7 @@ class RefusalCode(TextCode):
     MALFORMED = ("malformed", "{says}")
     STOPPED_MEANWHILE = ("stopped meanwhile", "{command} was stopped meanwhile")
     NO_PICTURE = ("no picture", "no word from the robot: nothing is sent to it")
-    """No press begins, because no recent state of the robot arrived."""
     PICTURE_LOST = ("picture lost", "no word from the robot: the press is over")
-    """A press ended, because no states of the robot arrive."""
     RESTARTED_MEANWHILE = ("restarted meanwhile", "the robot program was started again: the press is over")
     NOT_UNDERSTOOD = ("not understood", "the robot's answer is not understood: {says}")
 

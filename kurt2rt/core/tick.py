@@ -354,7 +354,7 @@ class Tick:
                 if self._handler.mid is not None:
                     self._handler.mid.mid.restart()
                 self._handler.forget_obstacles()
-                self._handler.delay.forget_question()
+                self._handler.delay.last_asked_tick = None
                 self._question.close()
                 if self._appraisal_perception is not None:
                     self._appraisal_perception.forget_turns()

@@ -55,14 +55,6 @@ class Critic:
         """Names of the opinions that can be taught."""
         return tuple(self._appraisals)
 
-    @property
-    def insert_beyond(self) -> float:
-        """Distance from the nearest condition beyond which a correction inserts an RLA; else it replaces the opinion.
-
-        A weighted distance, dimensionless.
-        """
-        return self.settings.learning.insert_radius_fraction * self.settings.learning.radius
-
     def appraise(self, tick: int, circumstances: AppraisalFeatures) -> Opinion | None:
         """Return the critic's opinion of the features in this tick; None before the first lesson.
 

@@ -96,7 +96,6 @@ class StandReason(TextCode):
             self.text, self.do = self.guard.text, self.guard.do
 
     DRIVES = ("drives", "", "", Severity.FINE)
-    """The wheels turn."""
     ASKS = ("asks", "it does not know this situation", "Teach it what to do here", Severity.WAITS)
     """The situation of the basic level is unknown."""
     DOUBTS = ("doubts", "it doubts that its action is right here", "Teach it what to do here", Severity.WAITS)
@@ -131,7 +130,6 @@ class StandReason(TextCode):
     BUMPERS_SILENT = ("bumpers silent", GuardReason.BUMPER_STALE)
     NOT_A_NUMBER = ("not a number", GuardReason.NOT_A_NUMBER)
     LEARNER_FAILED = ("learner failed", "its learner failed: {says}", "Mend it and begin again")
-    """A learner raised an error or decided an unknown action, and is not asked again."""
 
 
 class DecisionCause(TextCode):
@@ -190,7 +188,6 @@ class DecisionCause(TextCode):
         "",
         StandReason.LEARNER_FAILED,
     )
-    """A learner raised an error or decided an unknown action; the robot stands."""
 
 
 ASKING = frozenset({DecisionCause.UNKNOWN, DecisionCause.DOUBT, DecisionCause.TOUCHES})

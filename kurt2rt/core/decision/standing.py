@@ -18,14 +18,11 @@ class StopReason(TextCode):
     """Code for why the robot stands until a teacher resumes, with its text."""
 
     SAID_STOP = ("said stop", "{name} said stop")
-    """A teacher gave a stop."""
     LET_GO = ("let go", "{name} drove by hand and let go")
     """A teacher drove by hand and let go, or the press was lost."""
     BEHAVIOUR_OVER = ("behaviour over", "{name} is over")
-    """A behaviour that the teacher ran has ended."""
     SESSION_OVER = ("session over", "the session {name!r} is over")
     NO_TEACHER = ("no teacher", "no teacher is there")
-    """The robot drove and has no teacher now."""
     TEACHER_NOT_YET = ("teacher not yet", "{name} is not there yet")
     """The robot drove, and its new teacher has sent no sign of presence yet."""
     LINK_LOST = ("link lost", "lost the link to {name}")
@@ -36,7 +33,6 @@ class StopReason(TextCode):
     )
     """The same, because the computer was too slow for the speed of the simulation."""
     STARTED = ("started", "the robot program was started")
-    """The robot program was started."""
     NEXT_RUN = ("next run", "a new run was begun")
     """The same program began a new run."""
     SENSOR_BROKEN = (
@@ -46,7 +42,6 @@ class StopReason(TextCode):
     )
     """An infra-red sensor was noticed to be dead, stuck or unplugged."""
     GUARD = ("guard", "the guard: {name}")
-    """The guard keeps the robot stopped."""
 
 
 class ActiveStop(NamedTuple):

@@ -65,25 +65,16 @@ class JunctionDetector:
         self._left, self._left_baseline_m = _side(infrared, settings.left)
         self._right, self._right_baseline_m = _side(infrared, settings.right)
         self._odometry = WheelOdometry(robot.geometry)
-        self._yaw_rad = 0.0
+        self.yaw_rad = 0.0
+        """Total left turn since power-on, by the encoders."""
         self.restart()
-
-    @property
-    def yaw_rad(self) -> float:
-        """Total left turn since power-on in rad, by the encoders."""
-        return self._yaw_rad
-
-    @property
-    def street_rad(self) -> float | None:
-        """Direction of the present or last street in the frame of `yaw_rad`; None before the first street."""
-        return self._street_rad
 
     def restart(self) -> None:
         """Forget the street and the junction."""
         self.turn_rad = 0.0
         """Left turn of this tick."""
-        self._street_rad: float | None = None
-        """Direction of the present or last street."""
+        self.street_rad: float | None = None
+        """Direction of the present or last street in the frame of `yaw_rad`; None before the first street."""
         self._inside = True
         self._left_open = self._right_open = False
         self._open_m = self._between_m = self._between_rad = 0.0
@@ -100,7 +91,7 @@ class JunctionDetector:
         """
         motion = self._odometry.motion(readings.encoder_left_ticks, readings.encoder_right_ticks)
         step_m, self.turn_rad = abs(motion.forward_m), motion.turn_rad
-        self._yaw_rad += motion.turn_rad
+        self.yaw_rad += motion.turn_rad
         self._way_m += step_m
         self._net_m += motion.forward_m
         wall_m, distance_m, counts = self._settings.wall_m, self._distance_m, readings.infrared_counts
@@ -128,7 +119,7 @@ class JunctionDetector:
             return
         self._inside = True
         # After a turn the side sensors do not point to the sides of the old street.
-        if self._street_rad is not None and abs(self._yaw_rad - self._street_rad) < want.parallel_rad:
+        if self.street_rad is not None and abs(self.yaw_rad - self.street_rad) < want.parallel_rad:
             self._left_open |= sum(each >= want.way_m for each in left) >= want.open_sensors
             self._right_open |= sum(each >= want.way_m for each in right) >= want.open_sensors
 
@@ -143,11 +134,11 @@ class JunctionDetector:
             return None
         if step_m == 0.0:
             return None
-        heading_rad = self._yaw_rad - (left_rad + right_rad) / 2
-        if self._street_rad is not None and not self._inside:
-            off_rad = heading_rad - self._street_rad
+        heading_rad = self.yaw_rad - (left_rad + right_rad) / 2
+        if self.street_rad is not None and not self._inside:
+            off_rad = heading_rad - self.street_rad
             if abs(off_rad) < _TURNED_BACK_RAD:
-                self._street_rad += min(1.0, step_m / want.heading_over_m) * off_rad
+                self.street_rad += min(1.0, step_m / want.heading_over_m) * off_rad
                 self._restart_distance()
                 return None
             self._inside = True
@@ -157,8 +148,8 @@ class JunctionDetector:
 
     def _enter_street(self) -> JunctionEvent | None:
         """Enter a street; return the passed junction, None for the first street or a gap."""
-        came_rad, self._street_rad = self._street_rad, self._between_rad
-        event = None if came_rad is None else self._make_event(self._street_rad - came_rad)
+        came_rad, self.street_rad = self.street_rad, self._between_rad
+        event = None if came_rad is None else self._make_event(self.street_rad - came_rad)
         self._inside = self._left_open = self._right_open = False
         self._between_m = 0.0
         self._restart_distance()

@@ -52,7 +52,8 @@ class MidLevel:
         self.settings = settings
         self.tie_breaker: TieBreaker | None = None
         self._wanted = wanted
-        self._overridden = self._answered_overridden = False
+        self.overridden = self._answered_overridden = False
+        """Whether a teacher's override holds, until the next junction is passed."""
         self._match: Match | None = None
         self._changes = -1
         self._last = self._answer()
@@ -67,22 +68,17 @@ class MidLevel:
         """Name of the behaviour that the basic level drives by."""
         return self._wanted.behaviour
 
-    @property
-    def overridden(self) -> bool:
-        """Return whether a teacher's override holds, until the next junction is passed."""
-        return self._overridden
-
     def override(self, behaviour: str) -> None:
         """Command a behaviour until the next junction is passed. Raises CommandRefusedError for an unknown one.
 
         If an RLA of this situation has the same action, that RLA commands and gets the use counted.
         """
         self._wanted.select(behaviour)
-        self._overridden = True
+        self.overridden = True
 
     def end_override(self) -> None:
         """End the override: the mid level commands from the next decision on."""
-        self._overridden = False
+        self.overridden = False
 
     def restart(self) -> None:
         """Reset the situation after the robot was repositioned; an override stays."""
@@ -98,7 +94,7 @@ class MidLevel:
         changed = self.situation.perceive(readings)
         event = self.situation.passed
         if event is not None:
-            self._overridden = False
+            self.overridden = False
         if changed or self._changes != self.system.changes:
             self._match = self.system.match(self.situation.vector, level=MID)
             self._changes = self.system.changes
@@ -108,12 +104,12 @@ class MidLevel:
         return self._last if event is None else self._last._replace(event=event)
 
     def _still_holds(self) -> bool:
-        return self._answered_overridden == self._overridden and self._last.behaviour == self._wanted.behaviour
+        return self._answered_overridden == self.overridden and self._last.behaviour == self._wanted.behaviour
 
     def _answer(self) -> MidDecision:
         wanted, match = self._wanted, self._match
-        self._answered_overridden = self._overridden
-        if self._overridden:
+        self._answered_overridden = self.overridden
+        if self.overridden:
             if match is not None and match.known:
                 for rla in self.system.competitors(match.rla):
                     if rla.action == wanted.behaviour:

@@ -45,14 +45,10 @@ class History:
         self._ring = np.zeros((steps, width))
         self._sums = np.zeros(width)
         self._next = 0
-        self._filled = 0
+        self.filled = 0
+        """Number of steps held, at most the ring's length."""
         self._divisor = np.ones(width)
         """Number of steps held, at least 1, for each value: numpy divides by a single number in twice the time."""
-
-    @property
-    def filled(self) -> int:
-        """Number of steps held, at most the ring's length."""
-        return self._filled
 
     def push(self, values: NDArray[np.float64]) -> None:
         """Append the features of one step, shape (width,), in the features' units; a full ring drops the oldest.
@@ -66,8 +62,8 @@ class History:
         self._next += 1
         if self._next == len(self._ring):
             self._next = 0
-        if self._filled < len(self._ring):
-            self._set_filled(self._filled + 1)
+        if self.filled < len(self._ring):
+            self._set_filled(self.filled + 1)
 
     def fill(self, values: NDArray[np.float64]) -> None:
         """Set every step to `values`, shape (width,), in the features' units, as if the robot had always been here."""
@@ -90,7 +86,7 @@ class History:
         np.divide(self._sums, self._divisor, out)
 
     def _set_filled(self, steps: int) -> None:
-        self._filled = steps
+        self.filled = steps
         self._divisor.fill(max(steps, 1))
 
 

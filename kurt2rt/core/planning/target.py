@@ -20,7 +20,7 @@ GroupAt = Callable[[Vector], tuple[Rla, ...]]
 """Function from a situation (d,) to the RLAs on its place, oldest first; empty at an unknown place."""
 
 Target = Callable[[Vector], bool]
-"""Whether a situation (d,) reaches a goal; False for a lost robot (NaN)."""
+"""Function from a situation (d,) to whether it reaches a goal; False for a lost robot (NaN)."""
 
 
 def near_target(situation: Condition, within: float, distance: Distance, group_at: GroupAt) -> Target:

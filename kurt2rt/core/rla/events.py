@@ -150,19 +150,15 @@ class EventFault(TextCode):
     NOT_UNDOABLE = ("not undoable", "lesson {lesson!r} cannot be undone")
     NOT_REDOABLE = ("not redoable", "lesson {lesson!r} cannot be redone")
     LESSON_EXISTS = ("lesson exists", "command {command_id!r} has taught a lesson already")
-    """Another lesson has its command id."""
     RLA_EXISTS = ("rla exists", "RLA {rla_id} cannot be created: ids up to {last} are taken")
     NO_RLA = ("no rla", "RLA {rla_id} does not exist (ids 1 to {last} were used; some are deleted)")
     BAD_CONDITION = ("bad condition", "RLA {rla_id}: {error}")
     NOT_FINITE = ("not finite", "the situation named {name!r} holds a value that is not finite")
-    """A named situation holds an infinite value or NaN."""
     BAD_SITUATION = ("bad situation", "the situation named {name!r} has {got} values, level {level} matches {expected}")
-    """A named situation has another number of values than its level."""
     BAD_ACTION = ("bad action", "the action {action!r} cannot be taught; withdraw the RLA's action instead")
     BAD_REWARD = ("bad reward", "RLA {rla_id}: wrong reward (got {value}, allowed -1, 1)")
     WITHDRAWN_ALREADY = ("withdrawn already", "{title} has no action; withdraw an action once")
     NO_LEVEL = ("no level", "{title} is of the level {level!r}, but the file does not list its features")
-    """The knowledge file does not name the features of its level."""
 
 
 class InvalidEventError(ValueError):

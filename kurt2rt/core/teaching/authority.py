@@ -91,7 +91,8 @@ class ControlAuthority:
         self.teacher: str | None = None
         self.speed = 1
         """Robot seconds in one second. A lease lasts real time, so it is longer in robot time by this factor."""
-        self._repertoire = repertoire
+        self.repertoire = repertoire
+        """Actions that the teacher can run; no other part uses them while speeds are driven by hand."""
         self._present_until = -1
         self._press_ids: dict[str, int] = {}
         self._ended_press_ids: dict[str, int] = {}
@@ -220,11 +221,6 @@ class ControlAuthority:
             return None
         return self.teacher, self._press_ids[self.teacher]
 
-    @property
-    def repertoire(self) -> Repertoire:
-        """Actions that the teacher can run; no other part uses them while speeds are driven by hand."""
-        return self._repertoire
-
     def is_hold(self, teacher: str, press_id: int) -> bool:
         """Return whether a press is the newest hold of this teacher or an older one; a newer press is none yet."""
         return press_id <= self._holds.get(teacher, -1)
@@ -263,7 +259,7 @@ class ControlAuthority:
 
     def _start(self, action: str) -> None:
         self._speeds = self.held_press = None
-        self._behaviour = self._repertoire[action]
+        self._behaviour = self.repertoire[action]
         self._behaviour.start()
         self._behaviour_name = action
 

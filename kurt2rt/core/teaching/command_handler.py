@@ -240,8 +240,7 @@ class CommandHandler:
             events = before if event is None else (*before, event)
             for each in events:
                 self.updater.apply(each)
-            self._notify_mid_level(dated)
-            self._note_answer(dated, tick, taught=event is not None)
+            self._on_lesson(dated, tick, taught=event is not None)
         except (CommandRefusedError, InvalidEventError) as error:
             if was_free and self.authority.teacher is not None:
                 self.authority.hand_over(None)  # a refused command gives no authority
@@ -255,20 +254,19 @@ class CommandHandler:
         outcome = self._late.described(dated, outcome)
         return CommandResult(command.command_id, outcome, lesson=event is not None), events
 
-    def _note_answer(self, command: Command, tick: int, *, taught: bool) -> None:
-        """Note a lesson that answers the basic level's present question."""
-        if not taught or not isinstance(command, Teach | Correct) or command.level != BASIC:
+    def _on_lesson(self, command: Command, tick: int, *, taught: bool) -> None:
+        """Note a lesson: at the mid level it replaces the override, at the basic level it may answer a question."""
+        if not isinstance(command, Teach | Correct):
+            return
+        if command.level == MID and self.mid is not None:
+            self.mid.on_lesson(command)
+        if not taught or command.level != BASIC:
             return
         asked, meant = self.delay.asked_tick, command.decision_tick
         self.delay.last_asked_tick = None
         if asked is not None and (meant is None or meant >= asked):
             given = tick if command.seen_tick is None else command.seen_tick
             self.delay.on_answer(command.teacher, given, self.authority.speed)
-
-    def _notify_mid_level(self, command: Command) -> None:
-        """Tell the mid level of a lesson, which replaces the teacher's override of the present situation."""
-        if self.mid is not None and isinstance(command, Teach | Correct) and command.level == MID:
-            self.mid.on_lesson(command)
 
     def learn(self, tick: int, decision: Decision, opinion: Opinion | None) -> list[TeachingEvent]:
         """Learn from a tick after its wheel speeds were sent; return the events of its repairs and undos.

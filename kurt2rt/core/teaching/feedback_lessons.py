@@ -69,7 +69,9 @@ class FeedbackLessons:
                 agreed = Outcome.of(ResultCode.CRITIC_AGREED, appraisal=command.appraisal)
                 return LessonResult(agreed, Appraised(command.appraisal, value, meant, origin))
             return LessonResult(Outcome.of(ResultCode.CRITIC_AGREES, appraisal=command.appraisal))
-        if now is not None and now.rla is not None and now.distance <= critic.insert_beyond:
+        learning = critic.settings.learning
+        nearer_than = learning.insert_radius_fraction * learning.radius
+        if now is not None and now.rla is not None and now.distance <= nearer_than:
             rla = now.rla
             event = ActionReplaced(rla.rla_id, command.appraisal, rla.action, origin)
             return LessonResult(

@@ -56,7 +56,8 @@ class TeacherDelay:
         self.asked_tick: int | None = None
         """First tick of the present question; None if the robot does not ask."""
         self.last_asked_tick: int | None = None
-        """Newest tick of the last question, also if it ended by itself; None once a lesson was given after it."""
+        """Newest tick of the last question, also if it ended by itself; None once a lesson was given after it, or the
+        robot was set down elsewhere."""
         self._answered = False
 
     def on_decision(self, tick: int, *, asks: bool, present: bool = True) -> None:
@@ -70,10 +71,6 @@ class TeacherDelay:
         if self.asked_tick is None:
             self.asked_tick, self._answered = tick, not present
         self.last_asked_tick = tick
-
-    def forget_question(self) -> None:
-        """Forget a question that ended by itself, because the robot was set down elsewhere."""
-        self.last_asked_tick = None
 
     def on_answer(self, teacher: str, given_tick: int, speed: int) -> None:
         """Note an answer that its teacher gave on the state of `given_tick`; only the first to a question counts.
