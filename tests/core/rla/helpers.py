@@ -70,3 +70,10 @@ def undone(lesson: str) -> LessonUndone:
 
 def session(lasted_ticks: int) -> tuple[SessionBegun, SessionEnded]:
     return SessionBegun("morning", origin("begin", 5000)), SessionEnded(lasted_ticks, origin("end", 5000))
+
+
+def system_of(*events: TeachingEvent, radius: float = 5.0) -> RlaSystem:
+    """Return a plane's system that was taught by events."""
+    system = RlaSystem(2, radius)
+    system.apply_all(events)
+    return system

@@ -8,7 +8,18 @@ from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.events import Appraised, InvalidEventError, LessonRedone, TeachingEvent
 from kurt2rt.core.rla.rla import ASK
 from kurt2rt.core.rla.rla_system import RlaSystem
-from tests.core.rla.helpers import created, deleted, named, origin, refused_by, replaced, rewarded, undone, withdrawn
+from tests.core.rla.helpers import (
+    created,
+    deleted,
+    named,
+    origin,
+    refused_by,
+    replaced,
+    rewarded,
+    system_of,
+    undone,
+    withdrawn,
+)
 from tests.examples import examples
 
 FIRST = created(1, (0.0, 0.0))
@@ -17,12 +28,6 @@ SECOND = created(2, (9.0, 0.0), "left")
 
 def redone(lesson: str) -> LessonRedone:
     return LessonRedone(lesson, origin(f"redo-{lesson}", 4500))
-
-
-def system_of(*events: TeachingEvent) -> RlaSystem:
-    system = RlaSystem(2, 5.0)
-    system.apply_all(events)
-    return system
 
 
 @pytest.mark.parametrize(

@@ -8,17 +8,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.events import EventFault, InvalidEventError, TeachingEvent
 from kurt2rt.core.rla.matching import exact_distances
-from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.rla.rla import CRITIC, MID, Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
-from tests.core.rla.helpers import created, deleted, origin, refused_by, replaced, rewarded, session, undone
-
-
-def system_of(*events: TeachingEvent, radius: float = 5.0) -> RlaSystem:
-    system = RlaSystem(2, radius)
-    system.apply_all(events)
-    return system
+from tests.core.rla.helpers import (
+    created,
+    deleted,
+    named,
+    origin,
+    refused_by,
+    replaced,
+    rewarded,
+    session,
+    system_of,
+    undone,
+)
 
 
 def everything(system: RlaSystem) -> tuple[object, ...]:
@@ -206,3 +212,34 @@ def test_nearest_first_limit_is_a_prefix(most: int) -> None:
     assert system.nearest_first(np.array([0.0, 0.0]), limit=most) == whole[:most]
     lost = system.nearest_first(np.array([math.nan, 0.0]), limit=most)
     assert lost == tuple((rla_id, math.inf) for rla_id in range(1, 9))[:most]
+
+
+def around(system: RlaSystem, rla_id: int, count: int) -> list[int]:
+    rla = system.get(rla_id)
+    assert rla is not None
+    return [each.rla_id for each in system.neighbours(rla, count)]
+
+
+def test_neighbours_have_other_conditions_nearest_first() -> None:
+    system = RlaSystem(2, 5.0, others={CRITIC: Space(2, 1.0)})
+    for event in (
+        created(1, (0.0, 0.0)),
+        created(2, (0.0, 0.0), "back"),
+        created(3, (3.0, 0.0)),
+        created(4, (-1.0, 0.0)),
+        created(5, (3.0, 0.0), "left"),
+        created(6, (0.0, 9.0)),
+        created(7, (0.1, 0.0), behaviour="turn_left"),
+        created(8, (0.1, 0.0), "bad", level=CRITIC),
+    ):
+        system.apply(event)
+    assert around(system, 1, 9) == around(system, 2, 9) == [4, 3, 5, 6]  # of equally near ones the older first
+    assert around(system, 1, 2) == [4, 3]
+    assert around(system, 7, 9) == around(system, 8, 9) == around(system, 1, 0) == []
+
+
+def test_named_situation_unfit_for_level_is_refused() -> None:
+    knows = RlaSystem(2, 5.0, others={MID: Space(3, 0.5)})
+    assert refused_by(knows, named("door", (1.0, 2.0), MID)).fault is EventFault.BAD_SITUATION
+    assert refused_by(knows, named("door", (1.0, math.nan, 0.0), MID)).fault is EventFault.NOT_FINITE
+    assert knows.history.records == ()

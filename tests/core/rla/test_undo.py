@@ -11,17 +11,21 @@ from kurt2rt.core.rla.events import InvalidEventError, Lesson, TeachingEvent
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import ASK
 from kurt2rt.core.rla.rla_system import RlaSystem
-from tests.core.rla.helpers import created, deleted, refused_by, replaced, rewarded, session, undone, withdrawn
+from tests.core.rla.helpers import (
+    created,
+    deleted,
+    refused_by,
+    replaced,
+    rewarded,
+    session,
+    system_of,
+    undone,
+    withdrawn,
+)
 from tests.examples import examples
 
 FIRST = created(1, (0.0, 0.0))
 SECOND = created(2, (0.0, 0.0), "back")
-
-
-def system_of(*events: TeachingEvent) -> RlaSystem:
-    system = RlaSystem(2, 5.0)
-    system.apply_all(events)
-    return system
 
 
 def winner(system: RlaSystem, x: float, y: float) -> tuple[int, str]:
