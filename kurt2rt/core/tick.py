@@ -172,7 +172,7 @@ class Tick:
             found = watch.update(readings, driving=drove)
             if found:
                 names = ", ".join(sensor.title for sensor in found)
-                self._handler.stop(ActiveStop(StopReason.SENSOR_BROKEN, names))
+                self._handler.control.stop(ActiveStop(StopReason.SENSOR_BROKEN, names))
                 self._handler.stops.newest_tick = tick
         if not watch.places:
             return readings
@@ -276,7 +276,7 @@ class Tick:
         handler.on_decision(tick, asks=asks)
         if handler.mid is not None:
             handler.mid.remember(tick, decision)
-        choice.events.extend(handler.learn(tick, credited, view.opinion))
+        choice.events.extend(handler.updater.learn_from_tick(handler.phase, tick, credited, view.opinion))
         self._timer.lap(_LEARN)
         return surprise
 
@@ -307,7 +307,7 @@ class Tick:
                     self._statistics.drop_follow_ups(invalidated_rla)
         knowledge = None
         if choice.events or tick >= self._publish_knowledge_at:
-            knowledge = self._handler.active_rlas
+            knowledge = self._handler.level.system.active_rlas
             self._publish_knowledge_at = tick + _KNOWLEDGE_PERIOD_TICKS
         decision = stopped(choice.decision, DecisionCause.TOUCHES) if motion.asks_at_bumper else choice.decision
         # The later of both times: the clock of a replay stands still within a tick.
@@ -353,7 +353,7 @@ class Tick:
             case RobotRepositioned():
                 if self._handler.mid is not None:
                     self._handler.mid.mid.restart()
-                self._handler.forget_obstacles()
+                self._handler.level.forget_obstacles()
                 self._handler.delay.last_asked_tick = None
                 self._question.close()
                 if self._appraisal_perception is not None:
@@ -379,7 +379,7 @@ class Tick:
         if self._sensor_watch is not None:
             self._sensor_watch.readmit()
         # The person who says Go may have carried the robot away from what it touched.
-        self._handler.forget_obstacles()
+        self._handler.level.forget_obstacles()
         if self._latched:
             self._robot.release()
             self._latched = False

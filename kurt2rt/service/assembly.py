@@ -110,7 +110,7 @@ def assemble_service(
         ),
     )
     if context.stopped is not None:
-        runtime.handler.stop(context.stopped)
+        runtime.handler.control.stop(context.stopped)
     return RobotService(runtime, writer, settings.service, knowledge.stamps)
 
 

@@ -52,7 +52,7 @@ async def test_next_run_in_phase_5_with_a_session_stands_until_go(tmp_path: Path
     runs.advance()
     desk = ChannelFixture()
     school = desk.runtime.handler
-    school.stop(NEXT_RUN)
+    school.control.stop(NEXT_RUN)
     for command in runs.present.first_commands:
         desk.runtime.inbox.put(command)
     record = desk.run(10, counts=300)

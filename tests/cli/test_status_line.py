@@ -36,7 +36,7 @@ def status() -> ProgramStatus:
 
 def test_status_line_of_a_stopped_robot_names_the_stop() -> None:
     desk = ChannelFixture()
-    desk.runtime.handler.stop(STARTED)
+    desk.runtime.handler.control.stop(STARTED)
     status = ProgramStatus(desk.run(), desk.runtime, 0, None, "")
     assert short_text(status.record.standing) in status_line(status, WELL)
     assert status.record.standing.stop == STARTED

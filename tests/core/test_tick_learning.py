@@ -124,7 +124,7 @@ def test_phase_5_trusted_critic_makes_undoable_changes(driving: Drive) -> None:
 
 def test_no_reward_and_no_opinion_moves_a_robot_that_stands(driving: Drive) -> None:
     drive = trusting(driving)
-    drive.runtime.handler.stop(STARTED)
+    drive.runtime.handler.control.stop(STARTED)
     drive.run(SetPhase("phase", "Ann", Phase.AUTONOMOUS))
     for number in range(300):
         record = drive.run(Reward(f"r-{number}", "Ann", (-1, 1)[number % 2]), counts=(NEAR, FAR)[number // 150])

@@ -6,8 +6,7 @@ from typing import TypeGuard
 
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.lesson_speed import LessonSpeed
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
@@ -16,7 +15,7 @@ from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.rla.events import InvalidEventError, TeachingEvent
 from kurt2rt.core.rla.lesson_history import DERIVED
-from kurt2rt.core.rla.rla import AUTONOMOUS, BASIC, MID, Origin, Phase, Rla
+from kurt2rt.core.rla.rla import AUTONOMOUS, BASIC, MID, Origin, Phase
 from kurt2rt.core.teaching.authority import ControlAuthority, StopRecord, name_refusal
 from kurt2rt.core.teaching.commands import (
     BeAt,
@@ -86,7 +85,7 @@ class CommandHandler:
             ask_radius_fraction: fraction of R beyond which the robot asks while it is taught, in phases 1 and 2.
         """
         parts = parts or HandlerParts()
-        self._level = level
+        self.level = level
         self.teacher_available = teacher_available
         """False if there is no teacher to ask."""
         self._ask_radius_fraction = ask_radius_fraction
@@ -118,15 +117,6 @@ class CommandHandler:
         """Return whether a command of this id was carried out already."""
         return command_id in self.updater.handled_ids
 
-    def stop(self, stop: ActiveStop, by: str | None = None) -> None:
-        """Stand until `Resume`; `by`: teacher who stopped the robot and may still drive it by hand."""
-        self.control.stop(stop, by)
-
-    @property
-    def active_rlas(self) -> tuple[Rla, ...]:
-        """All active RLAs of all levels, in no order."""
-        return self._level.system.active_rlas
-
     @property
     def learner_failure(self) -> str | None:
         """Failure of the learner that decides instead of the RLAs, in one line; None without one."""
@@ -142,15 +132,15 @@ class CommandHandler:
         """
         if turned is not self._rewind.driving or tick % CHUNK_TICKS == 0:
             self._rewind.update(driving=turned)
-        self._level.skip_withdrawn = not self.teacher_available or self.phase is AUTONOMOUS
-        self._level.counts = self.lesson_speed.counts
+        self.level.skip_withdrawn = not self.teacher_available or self.phase is AUTONOMOUS
+        self.level.counts = self.lesson_speed.counts
         taught = self.is_taught
-        self._level.system.radius_share = self._ask_radius_fraction if taught else 1.0
+        self.level.system.radius_share = self._ask_radius_fraction if taught else 1.0
         if self._learner is not None:
             self._learner.counts, self._learner.taught = self.lesson_speed.counts, taught
         authority = self.authority
         if was_driving and self.stops.active is None and self.requires_teacher and not authority.is_present(tick):
-            self.stop(authority.absence_stop)
+            self.control.stop(authority.absence_stop)
 
     def causes_to_stand(self, tick: int, *, blind: bool, unsaved: bool) -> tuple[DecisionCause, ...]:
         """Return the causes that forbid the RLAs to drive in a tick, highest priority first.
@@ -160,10 +150,6 @@ class CommandHandler:
         unattended = self.requires_teacher and not self.authority.is_present(tick)
         holds = (self.stops.active is not None, blind, unsaved, unattended)
         return tuple(compress(_BLOCKING, holds)) if True in holds else ()
-
-    def forget_obstacles(self) -> None:
-        """Forget the obstacles that the basic level remembers, because the robot was set down elsewhere."""
-        self._level.forget_obstacles()
 
     @property
     def is_taught(self) -> bool:
@@ -268,13 +254,6 @@ class CommandHandler:
             given = tick if command.seen_tick is None else command.seen_tick
             self.delay.on_answer(command.teacher, given, self.authority.speed)
 
-    def learn(self, tick: int, decision: Decision, opinion: Opinion | None) -> list[TeachingEvent]:
-        """Learn from a tick after its wheel speeds were sent; return the events of its repairs and undos.
-
-        The events act from the next tick on and must be submitted to the journal.
-        """
-        return self.updater.learn_from_tick(self.phase, tick, decision, opinion)
-
     def _carry_out(self, command: Command, situation: Situation, tick: int) -> LessonResult:
         if isinstance(command, Stop):
             return LessonResult(self.control.carry_out(command, tick))
@@ -330,7 +309,7 @@ class CommandHandler:
         taken = self.clock.apply(command, tick, self._origin(command, tick))
         if isinstance(command, EndSession):
             # An earlier reason stays: the end of a session must not hide a teacher's stop.
-            self.stop(self.stops.active or ActiveStop(StopReason.SESSION_OVER, name or ""), command.teacher)
+            self.control.stop(self.stops.active or ActiveStop(StopReason.SESSION_OVER, name or ""), command.teacher)
         return taken
 
     def _origin(self, command: Command, tick: int) -> Origin:

@@ -78,7 +78,7 @@ class ControlCommands:
             return None
         return self._holds.build(tick, phase, self._authority.speed)
 
-    def stop(self, stop: ActiveStop, by: str | None) -> None:
+    def stop(self, stop: ActiveStop, by: str | None = None) -> None:
         """Stand until a resume.
 
         Args:

@@ -122,7 +122,7 @@ class KnowledgeUpdater:
     def learn_from_tick(
         self, phase: Phase, tick: int, decision: Decision, opinion: Opinion | None
     ) -> list[TeachingEvent]:
-        """Learn from a tick's decision and the critic's opinion of it; return the events.
+        """Learn from a tick after its wheel speeds were sent; return the events of its repairs and undos.
 
         The events act from the next tick on and have to reach the journal.
         """

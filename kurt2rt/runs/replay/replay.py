@@ -92,7 +92,7 @@ class Replay:
             cause = event_error_text(error) if isinstance(error, InvalidEventError) else told
             raise RecordingError(f"cannot be replayed: {cause}", where=run.name) from error
         if stop is not None:
-            runtime.handler.stop(stop)
+            runtime.handler.control.stop(stop)
         return runtime
 
 

@@ -119,7 +119,7 @@ class Track:
             opinion = self.critic.appraise(self.tick, seen)
             decision = self.level.decide(situation(place), sensed(), because)
             self.recent.add(self.tick, situation(place), decision, circumstances=seen, opinion=opinion)
-            self.learnt += self.school.learn(self.tick, decision, opinion)
+            self.learnt += self.school.updater.learn_from_tick(self.school.phase, self.tick, decision, opinion)
         self.events += self.learnt
         return decision
 

@@ -217,7 +217,7 @@ def record_story(
         RuntimeOptions(attended=told.attended, active_behaviour=wanted, checkpoint=saved),
     )
     if told.stopped:
-        runtime.handler.stop(told.stopped)
+        runtime.handler.control.stop(told.stopped)
     teacher = build_teacher(task, settings, tuple(runtime.level.repertoire), seed=3, session=name)
     scene = Scene(simulation, runtime, notebook, teacher)
     story: Story = other or (walls if name == "walls" else Errand(scene, task))
