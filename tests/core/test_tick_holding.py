@@ -223,3 +223,12 @@ def hold_through_the_unknown(corridor: Corridor) -> None:
     for counts in range(100, 400, 3):
         held(corridor, 2, counts)
     held(corridor, 20, 400)
+
+
+def test_hold_that_yields_leaves_an_answer_as_it_is() -> None:
+    corridor = Corridor(answers_override_holds=True)
+    corridor.run(100, teach("forward", "answer"))
+    for _ in range(200):
+        corridor.run(100)
+    held(corridor, NOTICED + DELAY + 3 * STEADY, 100)
+    assert actions(corridor) == {1: "forward"}

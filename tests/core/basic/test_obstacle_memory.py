@@ -13,8 +13,12 @@ from kurt2rt.core.decision.decision import ActiveBehaviour, Decision
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.teaching.commands import Command, Resume
+from kurt2rt.core.teaching.inbox import RobotRepositioned
 from tests.core.helpers import sensed
 from tests.core.rla.helpers import created
+from tests.core.test_tick import Corridor
+from tests.teacher.helpers import teach
 
 ROBOT = load_robot()
 SENSORS = ROBOT.infrared.names
@@ -136,3 +140,18 @@ def test_restarted_level_remembers_no_obstacle() -> None:
     robot.after_a_look()
     robot.level.restart()
     assert not robot.memory.meets("forward")
+
+
+@pytest.mark.parametrize(
+    ("message", "times"), [(RobotRepositioned(), 1), (Resume("go", "Ann"), 1), (teach("back", "other"), 0)]
+)
+def test_robot_forgets_obstacles_when_it_was_moved(
+    message: Command | RobotRepositioned, times: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    corridor = Corridor()
+    corridor.run(100, teach("forward", "first"))
+    forgot: list[int] = []
+    monkeypatch.setattr(corridor.level, "forget_obstacles", lambda: forgot.append(corridor.ticks))
+    corridor.inbox.put(message)
+    corridor.run(100)
+    assert forgot == [corridor.ticks] * times

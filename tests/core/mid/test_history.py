@@ -6,6 +6,14 @@ from kurt2rt.core.mid.settings import MidSettings, MidSituation, load_mid_level
 from tests.core.mid.walk import OPEN_M, ROBOT, STREET_M, sensed
 
 
+def test_builtin_mid_level_matches_the_paper() -> None:
+    mid = load_mid_level("turns")
+    assert (mid.space.dimensions, mid.space.radius, mid.space.metric) == (12, 6.0, "hamming")
+    assert mid.situation.kind == "history"
+    assert mid.features[0] == "symbol 1"
+    assert load_mid_level(mid) is mid
+
+
 class Led:
     """A robot that is led from junction to junction."""
 

@@ -1,4 +1,4 @@
-"""A task that is driven by another robot's sensors is refused with the robot that it is for."""
+"""Tasks: their sentence, their slow lessons, and the robots that can drive them."""
 
 from pathlib import Path
 
@@ -9,6 +9,24 @@ from config.settings_files import find_config
 from hal.robot_settings import load_robot
 from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task
+
+
+def task_file(folder: Path, what: str) -> Path:
+    lines = find_config("tasks", "wall_following").read_text().splitlines()
+    path = folder / "mine.yaml"
+    path.write_text("\n".join(what if line.startswith("description:") else line for line in lines))
+    return path
+
+
+def test_sentence_of_two_lines_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match="description"):
+        load_task(str(task_file(tmp_path, 'description: "one\\ntwo"')))
+
+
+def test_slow_lesson_rescues_after_a_longer_time() -> None:
+    task = load_task("wall_following", changes={"teaching.lesson_speed": "0.6"})
+    assert task.teaching.slow_rescue_after_s == pytest.approx(task.teaching.rescue_after_s / 0.6)
+    assert load_task("wall_following").teaching.slow_rescue_after_s == task.teaching.rescue_after_s
 
 
 @pytest.mark.parametrize(
