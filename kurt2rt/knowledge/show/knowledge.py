@@ -1,13 +1,12 @@
 """Output of `kurt2rt knowledge show` and `lessons`: RLAs and lessons as tables and for JSON."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from kurt2rt.core.perception.definition import AVERAGED
 from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
@@ -18,77 +17,40 @@ from kurt2rt.core.rla.events import (
     RlaRewarded,
     SessionBegun,
 )
-from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics, follow_ups
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.fold import fold_entries, read_content
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.show.level_tables import level_table, mid_table, named_table
-from kurt2rt.knowledge.show.table_cells import (
-    format_action,
-    format_rewards,
-    format_value,
-    printable,
-    replaced_action,
-    stamp_and_teacher,
-)
+from kurt2rt.knowledge.show.level_tables import RlaRow, basic_table, level_table, named_table
+from kurt2rt.knowledge.show.table_cells import printable, stamp_and_teacher
 from kurt2rt.platform.text_table import TextTable
 
 TICK_S = 0.01
 """Cycle of the KURT2: a knowledge file counts ticks and does not hold their duration."""
 
-_LARGEST_FEATURES = 3
-_FOLLOW_UPS = 3
-
 
 def render_knowledge(journal: Journal, limit: int | None = None, *, wide: bool = True) -> RenderableType:
-    """Return binding, summary and a table of the RLAs, oldest first, at most `limit` of them. Raises KnowledgeError.
+    """Return binding, summary and a table of the RLAs of each level, oldest first, at most `limit` of each.
 
-    `wide` adds each RLA's largest features and its successors, for which 80 columns are too few.
+    `wide` adds each RLA's largest features and its successors, for which 80 columns are too few. Raises KnowledgeError.
     """
     entries, system, statistics = read_content(journal)
-    rlas = system.rlas
-    any_value = any(rla.rla_id in statistics.values for rla in rlas)
-    taught = {entry.event.origin.command_id: entry for entry in entries}
-    shares = follow_ups(statistics)
-    named = any(rla.behaviour for rla in rlas)
-    table = _empty_table(named=named, any_value=any_value, wide=wide)
-    for rla in rlas[:limit]:
-        entry = taught[rla.origin.command_id]
-        cells: list[str | Text] = [
-            str(rla.rla_id),
-            *((printable(rla.behaviour),) if named else ()),
-            format_action(rla),
-            replaced_action(entry),
-            stamp_and_teacher(entry.stamped_at, rla.origin.teacher),
-            f"{rla.origin.phase.value}",
-            *((str(rla.origin.tick),) if wide or not any_value else ()),
-            str(statistics.uses.get(rla.rla_id, 0)),
-            format_rewards(system.appraisal(rla.rla_id)),
-            *((format_value(statistics.values.get(rla.rla_id)),) if any_value else ()),
-        ]
-        if wide:
-            cells.append(printable(_largest_features(rla, journal.binding.feature_names)))
-            cells.append(_followed_by(shares.get(rla.rla_id, {})))
-        table.add_row(*cells)
-    hidden = len(rlas) - table.row_count
-    parts: list[RenderableType] = [printable(_bound_to(journal)), printable(_summary(entries, system)), table]
-    if hidden:
-        parts.append(Text(f"and {hidden} more RLAs"))
-    for level, features in journal.binding.levels.items():
-        of_level = system.rlas_at(level)
-        if of_level:
-            if level == MID:
-                parts.append(mid_table(of_level[:limit], features, taught, statistics.uses, shares))
-            else:
-                parts.append(level_table(level, of_level[:limit], features.feature_names, taught))
-            more = len(of_level) - len(of_level[:limit])
-            parts.extend([Text(f"and {more} more of the level {level}")] if more else [])
+    parts: list[RenderableType] = [printable(_bound_to(journal)), printable(_summary(entries, system))]
+    of_levels = _rlas_as_data(journal, entries, system, statistics)
+    features = journal.binding.levels
+    for level, rlas in of_levels.items():
+        if level == BASIC:
+            parts.append(basic_table(rlas[:limit], any_value=bool(_values(rlas)), wide=wide))
+        elif rlas:
+            parts.append(level_table(level, rlas[:limit], features[level]))
+        more = len(rlas) - len(rlas[:limit])
+        if more:
+            parts.append(Text(f"and {more} more RLAs" if level == BASIC else f"and {more} more of the level {level}"))
         names = system.named_situations(level)
-        if names:
-            parts.append(named_table(names, features))
+        if names and level != BASIC:
+            parts.append(named_table(names, features[level]))
     return Group(*parts)
 
 
@@ -97,61 +59,68 @@ def render_lessons(journal: Journal, limit: int | None = None, taught_by: str | 
 
     `taught_by`: only those of that teacher.
     """
-    records, stamps, undone_by = _read_lessons(journal, taught_by)
+    data = lessons_data(journal, limit, taught_by)
     table = TextTable("lesson", "id", "taught (UTC), by", "undone by")
-    for record in records[:limit]:
-        origin = record.event.origin
-        table.add_row(
-            printable(record.text),
-            printable(origin.command_id),
-            stamp_and_teacher(stamps[origin.command_id], origin.teacher),
-            printable(undone_by[origin.command_id] if record.undone else ""),
-        )
-    hidden = len(records) - table.row_count
-    return Group(table, Text(f"and {hidden} older lessons")) if hidden else table
+    for each in data["lessons"]:
+        taught = stamp_and_teacher(each["taught_at"], each["teacher"])
+        table.add_row(printable(each["lesson"]), printable(each["id"]), taught, printable(each["undone_by"] or ""))
+    return Group(table, Text(f"and {data['older']} older lessons")) if data["older"] else table
 
 
 def knowledge_data(journal: Journal) -> dict[str, Any]:
     """Return binding, RLAs of all levels and named situations, for JSON. Raises KnowledgeError."""
     entries, system, statistics = read_content(journal)
-    taught = {entry.event.origin.command_id: entry for entry in entries}
     binding = journal.binding
-    features = {BASIC: binding.feature_names} | {
-        level: others.feature_names for level, others in binding.levels.items()
-    }
     return {
         "file": str(journal.path),
         "task": binding.system,
         "robot": binding.robot,
         "definition": binding.feature_hash,
         "lessons": system.history.standing,
-        "rlas": [
-            _rla_as_data(rla, taught[rla.origin.command_id], system, statistics, features[rla.level])
-            for level in features
-            for rla in system.rlas_at(level)
-        ],
+        "rlas": [rla for rlas in _rlas_as_data(journal, entries, system, statistics).values() for rla in rlas],
         "named": {
             level: {
                 name: dict(zip(names, situation, strict=True))
                 for name, situation in system.named_situations(level).items()
             }
-            for level, names in features.items()
+            for level, names in _features(journal).items()
             if system.named_situations(level)
         },
     }
 
 
-def _rla_as_data(
-    rla: Rla, entry: StoredEntry, system: RlaSystem, statistics: Statistics, names: tuple[str, ...]
-) -> dict[str, Any]:
-    appraisal = system.appraisal(rla.rla_id)
+def _features(journal: Journal) -> dict[str, tuple[str, ...]]:
+    """Return the names of the features of each level."""
+    binding = journal.binding
+    return {BASIC: binding.feature_names} | {level: each.feature_names for level, each in binding.levels.items()}
+
+
+def _rlas_as_data(
+    journal: Journal, entries: list[StoredEntry], system: RlaSystem, statistics: Statistics
+) -> dict[str, list[RlaRow]]:
+    """Return the RLAs of each level, oldest first."""
+    taught = {entry.event.origin.command_id: entry for entry in entries}
+    shares = follow_ups(statistics)
+    return {
+        level: [
+            _rla_as_data(rla, taught[rla.origin.command_id], system, statistics)
+            | {"followed_by_percent": shares.get(rla.rla_id, {})}
+            | {"condition": dict(zip(names, rla.condition, strict=True))}
+            for rla in system.rlas_at(level)
+        ]
+        for level, names in _features(journal).items()
+    }
+
+
+def _rla_as_data(rla: Rla, entry: StoredEntry, system: RlaSystem, statistics: Statistics) -> RlaRow:
+    appraisal, event = system.appraisal(rla.rla_id), entry.event
     return {
         "rla": rla.rla_id,
         "level": rla.level,
         "behaviour": rla.behaviour,
         "action": rla.action,
         "asks": rla.is_withdrawn,
-        "instead_of": replaced_action(entry).plain,
+        "instead_of": event.instead_of if isinstance(event, ActionReplaced | ActionWithdrawn) else "",
         "teacher": rla.origin.teacher,
         "phase": rla.origin.phase.value,
         "tick": rla.origin.tick,
@@ -161,9 +130,11 @@ def _rla_as_data(
         "rewards": appraisal.rewards,
         "punishments": appraisal.punishments,
         "value": statistics.values.get(rla.rla_id),
-        "followed_by_percent": follow_ups(statistics).get(rla.rla_id, {}),
-        "condition": dict(zip(names, rla.condition, strict=True)),
     }
+
+
+def _values(rlas: list[RlaRow]) -> list[float]:
+    return [each["value"] for each in rlas if each["value"] is not None]
 
 
 def lessons_data(journal: Journal, limit: int | None = None, taught_by: str | None = None) -> dict[str, Any]:
@@ -171,8 +142,13 @@ def lessons_data(journal: Journal, limit: int | None = None, taught_by: str | No
 
     `taught_by`: only those of that teacher; None: all.
     """
-    records, stamps, undone_by = _read_lessons(journal, taught_by)
-    shown = records[:limit]
+    entries = journal.entries()
+    lessons = fold_entries(journal, entries, radius=math.inf).history.records
+    records = [record for record in lessons[::-1] if taught_by in (None, record.event.origin.teacher)]
+    stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
+    undone_by = {
+        entry.event.lesson: entry.event.origin.teacher for entry in entries if isinstance(entry.event, LessonUndone)
+    }
     return {
         "file": str(journal.path),
         "lessons": [
@@ -183,36 +159,10 @@ def lessons_data(journal: Journal, limit: int | None = None, taught_by: str | No
                 "taught_at": stamps[record.event.origin.command_id],
                 "undone_by": undone_by[record.event.origin.command_id] if record.undone else None,
             }
-            for record in shown
+            for record in records[:limit]
         ],
-        "older": len(records) - len(shown),
+        "older": len(records[limit:]) if limit is not None else 0,
     }
-
-
-def _read_lessons(journal: Journal, taught_by: str | None) -> tuple[list[LessonRecord], dict[str, str], dict[str, str]]:
-    """Return the lessons, newest first, and by command id the stamps and the teachers of undos."""
-    entries = journal.entries()
-    lessons = fold_entries(journal, entries, radius=math.inf).history.records
-    records = [record for record in lessons[::-1] if taught_by in (None, record.event.origin.teacher)]
-    stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
-    undone_by = {
-        entry.event.lesson: entry.event.origin.teacher for entry in entries if isinstance(entry.event, LessonUndone)
-    }
-    return records, stamps, undone_by
-
-
-def _empty_table(*, named: bool, any_value: bool, wide: bool) -> TextTable:
-    table = TextTable()
-    behaviour = ("behaviour",) if named else ()
-    value = ("value",) if any_value else ()
-    tick = ("tick",) if wide or not any_value else ()  # where there is no room for both
-    numbers = ("phase", *tick, "uses", "rewards", *value)
-    for heading in ("RLA", *behaviour, "action", "instead of", "taught (UTC), by", *numbers):
-        table.add_column(heading, number=heading in ("RLA", *numbers))
-    if wide:
-        table.add_column("largest features")
-        table.add_column("followed by")
-    return table
 
 
 def _bound_to(journal: Journal) -> str:
@@ -265,16 +215,3 @@ def _how_many(system: RlaSystem) -> str:
         + (f" and {ways} mid-level RLAs" if ways else "")
         + (f" and {appraisals} appraisal RLAs" if appraisals else "")
     )
-
-
-def _largest_features(rla: Rla, feature_names: tuple[str, ...]) -> str:
-    """Return the recent features farthest from 0: a high count is a near obstacle, a wheel speed may be negative."""
-    recent = [
-        feature for feature in zip(feature_names, rla.condition, strict=True) if not feature[0].endswith(AVERAGED)
-    ]
-    features = sorted(recent, key=lambda feature: -abs(feature[1]))
-    return ", ".join(f"{name} {value:.0f}" for name, value in features[:_LARGEST_FEATURES])
-
-
-def _followed_by(shares: Mapping[int, float]) -> str:
-    return ", ".join(f"{rla_id} ({percent:.0f} %)" for rla_id, percent in list(shares.items())[:_FOLLOW_UPS])
