@@ -11,9 +11,20 @@ from rich.console import Console
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.cli.json_output import AsJson
-from kurt2rt.cli.options import ALL_PROCESSORS, Jobs
+from kurt2rt.cli.options import (
+    ALL_PROCESSORS,
+    DEFAULT_TEACHER,
+    Changes,
+    Jobs,
+    RobotName,
+    Teacher,
+    changes_of,
+    task_option,
+)
 from kurt2rt.cli.progress import OneBar, one_bar
 from kurt2rt.cli.tables import print_told
+from kurt2rt.core.task_robot import load_task_and_robot
+from kurt2rt.core.task_settings import TaskSettings, taught_by_named
 from kurt2rt.experiments.study.jobs import JobParts, Results
 from kurt2rt.experiments.study.pool import Executor, Waves, missing_time_s, open_processes, run_missing
 from kurt2rt.experiments.study.study_plan import AboutT, EngineRequest, StudyPlan, require_no_difference
@@ -62,6 +73,21 @@ class EngineOptions(JobOptions):
         if self.engine is EngineRequest.COMPILED:
             say_if_interpreted()
         return EngineRequest.CAN if self.engine is EngineRequest.AUTO and not IS_COMPILED else self.engine
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TaskOptions(EngineOptions):
+    """Options of studies in which a scripted teacher teaches one task."""
+
+    task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
+    teacher: Teacher = DEFAULT_TEACHER
+    changes: Changes = None
+    robot_settings: RobotName = None
+
+    def load(self) -> tuple[TaskSettings, RobotSettings]:
+        """Return the task with its teacher, and the robot. Raises SettingsError."""
+        task, robot = load_task_and_robot(self.task, self.robot_settings, changes=changes_of(self.changes))
+        return taught_by_named(task, self.teacher), robot
 
 
 def job_parts(robot: RobotSettings, folder: Path) -> JobParts:

@@ -11,7 +11,7 @@ from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.options import changes_of
 from kurt2rt.cli.progress import job_bars
-from kurt2rt.cli.study_run import run_study
+from kurt2rt.cli.study_run import job_parts, run_study
 from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.train_options import DEFAULT_TASK, FOLDER, TrainOptions, TrainSetup
 from kurt2rt.cli.train_route import errands, many_routes, one_route, require_no_route_options
@@ -131,7 +131,7 @@ def _one_seed(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
 
 
 def _many_seeds(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
-    parts = setup.parts(out)
+    parts = job_parts(setup.robot, out)
     plan = make_plan(setup.task, options.all_seeds, parts, engine=options.requested_engine())
     forget_lost_robots(plan)
 

@@ -20,7 +20,6 @@ from kurt2rt.cli.options import (
 )
 from kurt2rt.cli.study_run import EngineOptions
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.study.jobs import JobParts, Results
 from simbridge.contracts.simulation import SimulationFactory
 
 DEFAULT_TASK = "wall_following"
@@ -87,7 +86,3 @@ class TrainSetup:
     task: TaskSettings
     command: str
     """Typed words, as far as they decide the numbers."""
-
-    def parts(self, folder: Path) -> JobParts:
-        """Return what all jobs of a study share; `folder`: of its results."""
-        return JobParts(factory=self.factory, robot=self.robot, results=Results(folder))

@@ -4,7 +4,7 @@ import anyio
 import typer
 
 from kurt2rt.cli.progress import job_bars
-from kurt2rt.cli.study_run import run_study
+from kurt2rt.cli.study_run import job_parts, run_study
 from kurt2rt.cli.tables import print_told
 from kurt2rt.cli.train_options import ERRANDS, ROUTES, TrainOptions, TrainSetup
 from kurt2rt.core.task_settings import TaskSettings
@@ -39,7 +39,7 @@ def one_route(setup: TrainSetup, options: TrainOptions) -> None:
     if len(given) > 1:
         raise typer.BadParameter("one robot is taught one route; give --seeds, too", param_hint="--decisions")
     out = options.out or ROUTES
-    plan = make_plan(setup.task, (options.seed,), given, setup.parts(out), basic_folder=options.basic)
+    plan = make_plan(setup.task, (options.seed,), given, job_parts(setup.robot, out), basic_folder=options.basic)
     (job,), task = plan.of(RouteJob), plan.of(RouteJob)[0].task
     out.mkdir(parents=True, exist_ok=True)
     stem = f"{task.name}-{job.decisions}-{job.seed}"
@@ -73,7 +73,7 @@ def many_routes(setup: TrainSetup, options: TrainOptions) -> None:
     """
     from kurt2rt.experiments.route.tables import tell
 
-    parts = setup.parts(options.out or ROUTES)
+    parts = job_parts(setup.robot, options.out or ROUTES)
     plan = make_plan(setup.task, options.all_seeds, options.decisions or (), parts, basic_folder=options.basic)
     run_study(plan, options, lambda _: tell(plan, setup.command))
 
@@ -87,5 +87,7 @@ def errands(setup: TrainSetup, options: TrainOptions) -> None:
 
     if options.decisions or options.knowledge is not None:
         raise typer.BadParameter("errands take neither --decisions nor --knowledge; leave them out")
-    plan = make_plan(setup.task, options.all_seeds, setup.parts(options.out or ERRANDS), basic_folder=options.basic)
+    plan = make_plan(
+        setup.task, options.all_seeds, job_parts(setup.robot, options.out or ERRANDS), basic_folder=options.basic
+    )
     run_study(plan, options, lambda _: tell(plan))
