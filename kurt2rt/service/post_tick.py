@@ -5,13 +5,14 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from kurt2rt.channel.server.channel import Channel
-from kurt2rt.core.decision.decision import DecisionCause, withdrawn_rla_in
+from kurt2rt.channel.server.state_builder import basic_question
+from kurt2rt.core.decision.decision import withdrawn_rla_in
 from kurt2rt.core.decision.standing import question_text
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Command
-from kurt2rt.core.teaching.question import MidQuestion, Question, ask, ask_in_doubt, ask_the_way
+from kurt2rt.core.teaching.question import MidQuestion, Question, ask_the_way
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.platform.gc_control import collect_young
@@ -154,10 +155,9 @@ class PostTick:
         runtime, match = self._runtime, record.decision.match
         if runtime.mid is not None and record.decision.asks_at == MID:
             return ask_the_way(match, runtime.mid.settings.situation.describe(runtime.mid.vector))
-        weights, names = runtime.level.system.weights, runtime.definition.names
-        question = ask(match, record.situation.vector, weights, names, record.behaviour, words=self._words)
-        if record.decision.cause is DecisionCause.DOUBT and match is not None:
-            return ask_in_doubt(question, runtime.level.new_obstacle(match, record.situation.vector), names)
+        question = basic_question(runtime, record, self._words)
+        if question.doubts:
+            return question
         blamed = withdrawn_rla_in(record.decision)
         worth = None if blamed is None else float(runtime.reinforcement.value(blamed))
         return replace(question, worth=worth, touches=question_text(record.standing))

@@ -22,10 +22,6 @@ RETRY_S = 1.0
 """Time between two checks of a missing dependency, in s."""
 HOLD_S = 0.05
 """Time between two brake commands while the robot waits, in s; its controller stops by itself after 0.2 s."""
-_STARTS = "starts"
-_WAITS = "stands and waits for {missing}"
-_AVAILABLE = "{name} is there"
-_MISSING = "{name}: {says}"
 
 
 class StartError(UserError):
@@ -111,7 +107,7 @@ class StartupGate:
                 break
             await anyio.sleep(self._retry_s)
         if self.missing.pop(dependency.name):
-            self._log(available_text(dependency.name))
+            self._log(f"{dependency.name} is there")
         self._available[dependency.name].set()
         self._publish_status()
 
@@ -147,18 +143,13 @@ def require_folder(folder: Path) -> None:
         raise StartError(f"{folder} is not there", do="it comes with its disk, or make it")
 
 
-def available_text(name: DependencyName) -> str:
-    """Return the line for a dependency that is there now."""
-    return _AVAILABLE.format(name=name)
-
-
 def startup_text(missing: Mapping[DependencyName, str]) -> str:
     """Return the line for a start with these missing dependencies; those without a known error are left out."""
     known = {name: says for name, says in missing.items() if says}
-    return _WAITS.format(missing=missing_text(known)) if known else _STARTS
+    return f"stands and waits for {missing_text(known)}" if known else "starts"
 
 
 def missing_text(missing: Mapping[DependencyName, str]) -> str:
     """Return the dependencies with a known error in a line; without any, the names of all."""
-    known = [_MISSING.format(name=name, says=says) for name, says in missing.items() if says]
+    known = [f"{name}: {says}" for name, says in missing.items() if says]
     return "; ".join(known or missing)

@@ -10,8 +10,9 @@ from kurt2rt.channel.server.dependencies import ChannelDependencies
 from kurt2rt.core.decision.decision import DecisionCause, MidDecision
 from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.mid.mid_level import MidLevel
+from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import ASK, BASIC, Rla
-from kurt2rt.core.teaching.question import FeatureDifference, ask, ask_in_doubt
+from kurt2rt.core.teaching.question import FeatureDifference, Question, ask, ask_in_doubt
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runtime import Runtime
 
@@ -120,16 +121,10 @@ class StateBuilder:
         )
 
     def _question(self, record: TickRecord) -> tuple[FeatureDifference, ...]:
-        decision, match = record.decision, record.decision.match
-        if match is None or decision.asks_at != BASIC:
+        decision = record.decision
+        if decision.asks_at != BASIC or decision.cause not in (DecisionCause.UNKNOWN, DecisionCause.DOUBT):
             return ()
-        level, names, vector = self._runtime.level, self._runtime.definition.names, record.situation.vector
-        if decision.cause is DecisionCause.DOUBT:
-            question = ask(match, vector, level.system.weights, names)
-            return ask_in_doubt(question, level.new_obstacle(match, vector), names).differing
-        if decision.cause is not DecisionCause.UNKNOWN:
-            return ()
-        return ask(match, vector, level.system.weights, names).differing
+        return basic_question(self._runtime, record).differing
 
     def _nearest(self, record: TickRecord) -> _Nearest:
         match = record.decision.match
@@ -214,6 +209,15 @@ class StateBuilder:
             return 0, 0
         least = critic.settings.agreement.least
         return max(0, least - agreement.count_for(-1)), max(0, least - agreement.count_for(1))
+
+
+def basic_question(runtime: Runtime, record: TickRecord, words: SensorWords = NO_WORDS) -> Question:
+    """Return what the basic level asks in a tick; `words`: for the robot's sensors."""
+    match, vector, names = record.decision.match, record.situation.vector, runtime.definition.names
+    question = ask(match, vector, runtime.level.system.weights, names, record.behaviour, words=words)
+    if record.decision.cause is DecisionCause.DOUBT and match is not None:
+        return ask_in_doubt(question, runtime.level.new_obstacle(match, vector), names)
+    return question
 
 
 def _plan(record: TickRecord) -> _Plan:
