@@ -2,11 +2,8 @@
 
 import hashlib
 import hmac
-import secrets
 from collections.abc import Collection, Mapping
-from typing import Self
 
-from kurt2rt.channel.security.pairing import LOCAL
 from kurt2rt.teacher.page.host_names import is_own_host
 from kurt2rt.teacher.page.public_address import PublicAddress
 
@@ -24,7 +21,7 @@ class Access:
         names: Collection[str],
         public: PublicAddress | None = None,
         *,
-        address_command: str | None = None,
+        address_command: str = "kurt2rt run --phone",
     ) -> None:
         """Create the rules of a paired device.
 
@@ -33,22 +30,16 @@ class Access:
             token: secret of its pairing.
             names: of this machine, as a browser may write them in an address.
             public: address at which a TLS proxy serves the page, if any.
-            address_command: command that shows the page's address. Default: kurt2rt teach for this device.
+            address_command: command that shows the page's address.
         """
         self.device = device
-        teach = "kurt2rt teach" if device == LOCAL else f"kurt2rt teach --device {device}"
-        self.address_command = teach if address_command is None else address_command
+        self.address_command = address_command
         self.public = public
         self._token = token.encode()
         self._names = frozenset(name.lower() for name in names)
         # A cookie holds for all ports: the pages of two devices on one machine need two names.
         self.cookie_name = f"kurt2rt-{device}"
         self.cookie = hmac.new(self._token, b"kurt2rt page", hashlib.sha256).hexdigest()
-
-    @classmethod
-    def without_device(cls, names: Collection[str]) -> Self:
-        """Return rules that refuse all visitors; `names` are this machine's names in Host headers."""
-        return cls("", secrets.token_urlsafe(), names, address_command="kurt2rt run --phone")
 
     def accepts_token(self, token: str) -> bool:
         """Return whether this is the token, in constant time."""

@@ -1,6 +1,7 @@
 """Pages of several devices on one port: each request goes to the device of its token or cookie."""
 
 import contextlib
+import secrets
 from collections.abc import Callable, Collection, Mapping
 from contextlib import AbstractAsyncContextManager
 from dataclasses import dataclass
@@ -21,6 +22,8 @@ from kurt2rt.teacher.page.app import build_app
 from kurt2rt.teacher.page.auth_middleware import AuthMiddleware
 from kurt2rt.teacher.page.bridge import Bridge
 from kurt2rt.teacher.page.host_names import is_loopback
+from kurt2rt.teacher.page.public_address import PublicAddress
+from kurt2rt.teacher.page.served_pages import PageAddress, page_addresses
 
 OpenLink = Callable[[Device], AbstractAsyncContextManager[TeacherClient]]
 """Opens a device's link to the robot. Raises CredentialsError."""
@@ -42,7 +45,17 @@ class PageSite:
     """Names of this machine, as a browser may write them in an address."""
     address: str
     """Address or name of this machine for phones; auto: its addresses in its networks."""
+    public: PublicAddress | None = None
+    """Address at which a TLS proxy serves the pages."""
+    address_command: str = "kurt2rt run --phone"
+    """Command that shows the addresses, for a visitor who is not paired."""
     idle_s: float = IDLE_S
+
+    def addresses(self, device: Device, port: int) -> tuple[PageAddress, ...]:
+        """Return the addresses of a device's page on a TCP port; empty if no phone can reach this machine."""
+        if self.public is not None:
+            return (PageAddress(device.name, f"{self.public.origin}/pair?token={device.token}"),)
+        return page_addresses(device, self.address, port)
 
 
 class _DevicePage:
@@ -50,7 +63,7 @@ class _DevicePage:
 
     def __init__(self, device: Device, site: PageSite) -> None:
         self.device = device
-        self.access = Access(device.name, device.token, site.names)
+        self.access = Access(device.name, device.token, site.names, site.public)
         self._site = site
         self._app: ASGIApp | None = None
         self._closed: anyio.Event | None = None
@@ -134,7 +147,8 @@ class DevicePages:
         self._site = site
         self._pages: Mapping[str, _DevicePage] = {}
         # A visitor without a token or cookie of any device gets the refusals of this middleware.
-        self._refusal = AuthMiddleware(_no_app, Access.without_device(site.names))
+        nobody = Access("", secrets.token_urlsafe(), site.names, site.public, address_command=site.address_command)
+        self._refusal = AuthMiddleware(_no_app, nobody)
 
     def serve(self, devices: Collection[Device]) -> None:
         """Serve these devices from now on, and close the connections of devices that were revoked or renewed."""
@@ -146,6 +160,11 @@ class DevicePages:
         self._pages = kept
         for page in removed:
             page.end()
+
+    async def open_links(self) -> None:
+        """Open the link of each device, before a browser shows its page. Raises CredentialsError."""
+        for page in self._pages.values():
+            await page.app(self._tasks)
 
     async def end(self) -> None:
         """Close every link and connection, without waiting for a robot that does not answer."""

@@ -13,10 +13,13 @@ from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, Device, pai
 from kurt2rt.teacher.page.device_pages import DevicePages, PageSite
 from kurt2rt.teacher.page.own_addresses import NO_ADDRESS
 from kurt2rt.teacher.page.public_address import PageError
-from kurt2rt.teacher.page.served_pages import ServedPages, page_addresses
+from kurt2rt.teacher.page.served_pages import ServedPages
 from kurt2rt.teacher.page.server import PagePort
 
 _POLL_PAIRINGS_S = 1.0
+
+FindDevices = Callable[[], tuple[tuple[Device, ...], str]]
+"""Returns devices, and the faults of others in a line (or empty). Raises CredentialsError."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,23 +52,25 @@ def local_devices(pairings: Pairings) -> tuple[tuple[Device, ...], str]:
 
 
 async def run_device_pages(
-    pairings: Pairings,
+    find: FindDevices,
     site: PageSite,
     port: int,
     publish: Callable[[ServedPages], None],
     until_ended: Callable[[], Awaitable[None]],
     *,
+    at_once: bool = False,
     spare_ports: int = 0,
     poll_s: float = _POLL_PAIRINGS_S,
 ) -> None:
     """Serve until `until_ended` returns; the network only while a device is paired. Raises PageError, CredentialsError.
 
     Args:
-        pairings: folders to follow.
+        find: returns the devices to serve, as `local_devices`; called in a thread, again and again.
         site: settings of the pages.
         port: TCP port, 0: any.
         publish: gets the served pages, at first and after each change.
         until_ended: returns when the program has to end.
+        at_once: open the links to the robot before a browser shows a page.
         spare_ports: as for `kurt2rt.teacher.page.server.listen`.
         poll_s: time between two reads of the pairings.
     """
@@ -73,10 +78,13 @@ async def run_device_pages(
         pages = DevicePages(links, site)
         async with anyio.create_task_group() as serving:
             page_port = PagePort(pages, serving, port, spare_ports=spare_ports)
-            found = (await anyio.to_thread.run_sync(local_devices, pairings))[0]
+            found = (await anyio.to_thread.run_sync(find))[0]
             await page_port.open(everywhere=_needs_network(found))
+            if at_once:
+                pages.serve(found)
+                await pages.open_links()
             async with anyio.create_task_group() as polling:
-                polling.start_soon(_follow_pairings, pairings, pages, page_port, site.address, publish, poll_s)
+                polling.start_soon(_follow_pairings, find, pages, page_port, site, publish, poll_s)
                 await until_ended()
                 polling.cancel_scope.cancel()
             await pages.end()
@@ -85,10 +93,10 @@ async def run_device_pages(
 
 
 async def _follow_pairings(
-    pairings: Pairings,
+    find: FindDevices,
     pages: DevicePages,
     page_port: PagePort,
-    address: str,
+    site: PageSite,
     publish: Callable[[ServedPages], None],
     poll_s: float,
 ) -> None:
@@ -96,7 +104,7 @@ async def _follow_pairings(
     published = None
     while True:
         try:
-            found, fault = await anyio.to_thread.run_sync(local_devices, pairings)
+            found, fault = await anyio.to_thread.run_sync(find)
         except CredentialsError as error:
             fault = str(error)  # the devices found before stay served: a faulty disk must not end teaching
         pages.serve(found)
@@ -104,7 +112,7 @@ async def _follow_pairings(
             await page_port.open(everywhere=_needs_network(found))
         except PageError as error:
             fault = f"{fault}; {error}".strip("; ")
-        of_devices = [page_addresses(each, address, page_port.port) for each in found]
+        of_devices = [site.addresses(each, page_port.port) for each in found]
         if not all(of_devices):
             fault = f"{fault}; {NO_ADDRESS}".strip("; ")
         served = ServedPages(tuple(chain.from_iterable(of_devices)), page_port.everywhere is True, fault)

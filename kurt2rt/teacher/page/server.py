@@ -1,10 +1,10 @@
-"""Server of the page, until it has to end."""
+"""TCP port and server of the pages."""
 
 import contextlib
 import errno
 import os
 import socket
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Iterator
 
 import anyio
 import anyio.abc
@@ -12,15 +12,9 @@ import uvicorn
 from starlette.types import ASGIApp
 
 from kurt2rt.channel.protocol.udp_socket import MISSING_FAMILY
-from kurt2rt.teacher.client.answer import NoAnswerError
-from kurt2rt.teacher.client.client import TeacherClient
-from kurt2rt.teacher.page.access import Access
-from kurt2rt.teacher.page.app import build_app
-from kurt2rt.teacher.page.bridge import Bridge
 from kurt2rt.teacher.page.public_address import PageError
 from kurt2rt.teacher.page.uvicorn_protocols import REQUEST_WITHIN_S, ConnectionLimiter, TolerantWebSocket, limited_http
 
-_END_S = 1.0
 _MAX_CONNECTIONS = 96
 """Limit on all connections; ConnectionLimiter allows a third of them without a cookie."""
 
@@ -52,40 +46,6 @@ def _listener(port: int, *, everywhere: bool) -> socket.socket:
             if error.errno not in MISSING_FAMILY:
                 break
     raise failure
-
-
-async def run_page(
-    robot: TeacherClient,
-    access: Access,
-    robot_place: str,
-    listener: socket.socket,
-    until_ended: Callable[[], Awaitable[None]],
-    *,
-    request_within_s: float = REQUEST_WITHIN_S,
-) -> None:
-    """Serve the page of a device until `until_ended` returns; a robot that is driven by hand is stopped first.
-
-    Args:
-        robot: connected client of the device.
-        access: rules of the device.
-        robot_place: address of the robot, as the page shows it.
-        listener: socket of `listen`.
-        until_ended: returns at the end.
-        request_within_s: a connection without a whole request in this time is closed, in s.
-    """
-    robot.watching = False
-    bridge = Bridge(robot, access.device, robot_place)
-    async with anyio.create_task_group() as tasks:
-        await tasks.start(bridge.run)
-        async with anyio.create_task_group() as serving:
-            app = build_app(bridge, access, robot)
-            server: uvicorn.Server = await serving.start(_serve, app, listener, request_within_s)
-            await until_ended()
-            # A robot that does not answer stops by itself when its teacher is silent.
-            with anyio.move_on_after(_END_S), contextlib.suppress(NoAnswerError):
-                await bridge.end()
-            server.should_exit = True
-        tasks.cancel_scope.cancel()
 
 
 class PagePort:

@@ -24,8 +24,8 @@ from kurt2rt.service.shutdown import ProcessContext
 from kurt2rt.service.simulated_runs import SimulatedRun, SimulatedRuns
 from kurt2rt.service.systemd.notifier import Notifier
 from kurt2rt.teacher.client.client import TeacherClient
-from kurt2rt.teacher.page.access import Access
-from kurt2rt.teacher.page.server import listen, run_page
+from kurt2rt.teacher.page.device_pages import DevicePages, PageSite
+from kurt2rt.teacher.page.server import PagePort
 from simbridge.realtime import RealtimeSimulation, RealtimeWorld
 from simbridge.robot_simulation import Kurt2Simulation
 from simbridge.worlds.world_loading import load_world
@@ -166,13 +166,18 @@ class _NoSignals:
 
 @contextmanager
 def _served(portal: anyio.from_thread.BlockingPortal, client: TeacherClient, device: Device) -> Iterator[str]:
-    listener = listen(0, everywhere=False)
-    access = Access(device.name, device.token, [])
-    ended = portal.call(anyio.Event)
-    with listener:
-        serving = portal.start_task_soon(run_page, client, access, "127.0.0.1", listener, ended.wait)
-        try:
-            yield f"http://127.0.0.1:{listener.getsockname()[1]}/pair?token={device.token}"
-        finally:
-            portal.call(ended.set)
-            serving.result()
+    with portal.wrap_async_context_manager(_pages(client, device)) as port:
+        yield f"http://127.0.0.1:{port}/pair?token={device.token}"
+
+
+@asynccontextmanager
+async def _pages(client: TeacherClient, device: Device) -> AsyncIterator[int]:
+    async with anyio.create_task_group() as tasks:
+        pages = DevicePages(tasks, PageSite(lambda _: nullcontext(client), "127.0.0.1", [], "127.0.0.1"))
+        pages.serve([device])
+        await pages.open_links()
+        port = PagePort(pages, tasks, 0)
+        await port.open(everywhere=False)
+        yield port.port
+        await pages.end()
+        port.end()

@@ -90,7 +90,14 @@ async def server(folder: Path) -> AsyncIterator[Server]:
     local_pairing(pairings.teachers, pairings.devices)
     local_pairing(pairings.teachers, pairings.devices, TERMINAL)
     async with anyio.create_task_group() as tasks:
-        tasks.start_soon(serve, pairings, PageSite(links, "a robot", ["desk"], "desk"), 0, told.append, end.wait)
+        tasks.start_soon(
+            serve,
+            partial(local_devices, pairings),
+            PageSite(links, "a robot", ["desk"], "desk"),
+            0,
+            told.append,
+            end.wait,
+        )
         opened = Server(pairings, links, told)
         await opened.tells(lambda _: True)
         yield opened

@@ -7,10 +7,10 @@ import io
 import json
 import socket
 from collections.abc import AsyncIterator
-from contextlib import AsyncExitStack, asynccontextmanager
+from contextlib import AsyncExitStack, asynccontextmanager, nullcontext
 from dataclasses import dataclass
-from functools import partial
-from typing import Any
+from pathlib import Path
+from typing import Any, cast
 
 import anyio
 import pytest
@@ -18,10 +18,13 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidStatus
 
 from kurt2rt.channel.protocol.limits import MOST_UPLOAD_BYTES
+from kurt2rt.channel.security.pairing import Device
+from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.access import Access
 from kurt2rt.teacher.page.app import STATIC
+from kurt2rt.teacher.page.device_pages import DevicePages, PageSite
 from kurt2rt.teacher.page.public_address import PageError, PublicAddress
-from kurt2rt.teacher.page.server import listen, run_page
+from kurt2rt.teacher.page.server import PagePort, listen
 from tests.channel.jumping_loop import run_jumping
 from tests.channel.missing_family import remove_family
 from tests.teacher.page.fake_robot import FakeRobot
@@ -79,15 +82,26 @@ class Served:
 
 @asynccontextmanager
 async def served(*, public: PublicAddress | None = None, request_within_s: float = 5.0) -> AsyncIterator[Served]:
-    robot = FakeRobot()
+    robot, end = FakeRobot(), anyio.Event()
     access = Access("local", TOKEN, ["desk"], public)
-    end = anyio.Event()
-    with listen(0, everywhere=False) as listener:
-        async with anyio.create_task_group() as tasks:
-            serve = partial(run_page, request_within_s=request_within_s)
-            tasks.start_soon(serve, robot, access, "127.0.0.1:5683", listener, end.wait)
-            yield Served(robot, access, listener.getsockname()[1], end)
-            end.set()
+    site = PageSite(
+        lambda _: nullcontext(cast(TeacherClient, robot)), "127.0.0.1:5683", ["desk"], "desk", public, "kurt2rt teach"
+    )
+    async with anyio.create_task_group() as tasks:
+        pages = DevicePages(tasks, site)
+        pages.serve([Device(Path("local"), "local", "127.0.0.1", 5683, TOKEN)])
+        await pages.open_links()
+        port = PagePort(pages, tasks, 0, request_within_s=request_within_s)
+        await port.open(everywhere=False)
+
+        async def serve() -> None:
+            await end.wait()
+            await pages.end()
+            port.end()
+
+        tasks.start_soon(serve)
+        yield Served(robot, access, port.port, end)
+        end.set()
 
 
 async def hear(socket: ClientConnection, kind: str) -> dict[str, Any]:
