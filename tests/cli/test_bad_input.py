@@ -42,39 +42,20 @@ def lessons_in(knowledge: Path) -> int:
 
 
 @pytest.mark.parametrize("command", EVERY_WRITER + EVERY_READER, ids=" ".join)
-def test_command_with_a_foreign_file_is_refused_and_keeps_it(
+def test_path_without_a_knowledge_file_is_refused_and_kept(
     kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]
 ) -> None:
-    letter = tmp_path / "letter.txt"
+    letter, folder = tmp_path / "letter.txt", tmp_path / "folder"
     letter.write_text(NOT_OURS, encoding="utf-8")
+    folder.mkdir()
     assert str(KnowledgeError(KnowledgeCode.NO_SQLITE_FILE, where=letter)) in kurt2rt.refused(*command, letter)
+    assert str(KnowledgeError(KnowledgeCode.NOT_A_FILE, where=folder)) in kurt2rt.refused(*command, folder)
+    if command in EVERY_READER:
+        assert os.strerror(errno.ENOENT) in kurt2rt.refused(*command, tmp_path / "none.knowledge")
+        assert set(tmp_path.iterdir()) == {letter, folder}
+    else:
+        assert "letter.txt" in kurt2rt.refused(*command, letter / "x.knowledge")
     assert letter.read_text(encoding="utf-8") == NOT_OURS
-
-
-@pytest.mark.parametrize("command", EVERY_WRITER + EVERY_READER, ids=" ".join)
-def test_command_with_a_folder_for_a_file_is_refused(
-    kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]
-) -> None:
-    (tmp_path / "folder").mkdir()
-    error = KnowledgeError(KnowledgeCode.NOT_A_FILE, where=tmp_path / "folder")
-    assert str(error) in kurt2rt.refused(*command, tmp_path / "folder")
-
-
-@pytest.mark.parametrize("command", EVERY_READER, ids=" ".join)
-def test_reader_of_a_missing_file_is_refused_and_makes_none(
-    kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]
-) -> None:
-    assert os.strerror(errno.ENOENT) in kurt2rt.refused(*command, tmp_path / "none.knowledge")
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("command", EVERY_WRITER, ids=" ".join)
-def test_writer_below_a_file_is_refused_and_keeps_it(
-    kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]
-) -> None:
-    (tmp_path / "letter.txt").write_text(NOT_OURS, encoding="utf-8")
-    assert "letter.txt" in kurt2rt.refused(*command, tmp_path / "letter.txt" / "x.knowledge")
-    assert (tmp_path / "letter.txt").read_text(encoding="utf-8") == NOT_OURS
 
 
 def other_features(folder: Path) -> Path:
@@ -129,6 +110,11 @@ def test_misfit_knowledge_is_refused_by_exam_lesson_and_run(
         (("run", "--world", "maps/cave.PGM"), " maps/cave.yaml "),
         (("replay", "/proc/self/mem"), f"[Errno {errno.EIO}]"),
         (("run", "--bus", "can7"), "bus 'can7': "),
+        (("run", "--auto", "--teacher", "nosuch"), unknown_name("teachers", "nosuch")),
+        (("sim", "--bus", "can7"), "bus 'can7': "),
+        (("sim", "--world", "nope"), unknown_name("worlds", "nope")),
+        (("sim", "--robot-settings", "nope"), unknown_name("robots", "nope")),
+        (("sim", "--start", "99"), " 99"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
 )
@@ -158,6 +144,24 @@ def test_option_with_an_unknown_name_is_refused(kurt2rt: CommandLine, words: tup
         (("fly",), "'fly'"),
         (("demo", "--fast"), "--fast"),
         (("exam",), "Missing argument"),
+        (("sim", "--bus", "virtual:x"), "--bus"),
+        (("sim", "--seconds", "inf"), "--seconds"),
+        (("sim", "--start", "0"), "--start"),
+        (("ros", "--namespace", "a b"), "use letters, digits and _, joined by /"),
+        (("ros", "--naming", "dds"), "bridge"),
+        (("ros", "--domain", "233"), "232"),
+        (("run", "--auto", "--task", "route"), "kurt2rt train --task route"),
+        (("run", "--service", "--teacher", "none"), "--service"),
+        (("run", "--service", "--auto"), "--service"),
+        (("train", "--task", "circle", "--decisions", "8"), "--decisions"),
+        (("train", "--task", "circle", "--basic", "here"), "--basic"),
+        (("train", "--task", "route", "--decisions", "8", "--decisions", "12"), "--seeds"),
+        (("study", "paper", "--seeds", "many"), "'many'"),
+        (("why", "none.mcap", "--at", "3", "--from", "2"), "--from and --to"),
+        (("why", "none.mcap", "--from", "3", "--to", "2"), "--from 3"),
+        (("why", "none.mcap", "--picture", "why.txt"), ".png"),
+        (("why", "--live", "--at", "3"), "--live"),
+        (("why", "--device", "phone"), "--device"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
 )
@@ -191,21 +195,36 @@ def test_a_weight_for_a_feature_that_there_is_not_is_refused(
     assert "'s99'" in last
 
 
-@pytest.mark.parametrize(
-    ("where", "command"),
-    [("teaching", ("demo",)), ("exam", ("demo",)), ("teaching", ("train",)), ("exam", ("train", "--seeds", "1,2"))],
-)
-def test_task_with_unknown_world_is_refused_before_the_lesson(
-    kurt2rt: CommandLine, tmp_path: Path, where: str, command: tuple[str, ...]
-) -> None:
-    def somewhere_else(content: dict[str, object]) -> None:
-        part = content[where]
-        assert isinstance(part, dict)
-        part.update({"world": "nope"} if where == "teaching" else {"worlds": ["a", "nope"]})
+NO_POST = "task circle: metric rounds: world A has 0 round obstacles; choose one with a single one"
 
-    task = changed("tasks", "wall_following", tmp_path, somewhere_else)
-    assert unknown_name("worlds", "nope") in kurt2rt.refused(*command, "--task", task, "--out", tmp_path / "out")
-    assert not (tmp_path / "out").exists()
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [
+        ("demo --set teaching.world=nope", unknown_name("worlds", "nope")),
+        ("demo --set exam.worlds=[a,nope]", unknown_name("worlds", "nope")),
+        ("train --set teaching.world=nope", unknown_name("worlds", "nope")),
+        ("train --seeds 1,2 --set exam.worlds=[a,nope]", unknown_name("worlds", "nope")),
+        ("train --task circle --set teaching.world=a", NO_POST),
+        ("train --task circle --seeds 1,2 --set exam.worlds=[one_object,a]", NO_POST),
+        ("demo --task circle --set exam.worlds=[one_object,a]", NO_POST),
+        ("train --engine compiled", "give --seeds"),
+        ("train --task route --decisions 7", "7 decisions"),
+        ("study paper --task sledging", unknown_name("tasks", "sledging")),
+        ("study phases --task circle", "`phases:`"),
+        ("study phases --set phases.repair_worlds=[nowhere]", unknown_name("worlds", "nowhere")),
+        ("study transfer --world a", "world a"),
+        ("study compare --learner deep-thought", "there is no such learner"),
+        ("study search sledging", unknown_name("searches", "sledging")),
+        *(
+            (f"{command} --teacher nosuch", unknown_name("teachers", "nosuch"))
+            for command in ("train", "demo", "study paper", "study phases")
+        ),
+    ],
+)
+def test_lesson_or_study_that_cannot_be_is_refused_before_work(kurt2rt: CommandLine, line: str, why: str) -> None:
+    assert why in kurt2rt.refused(*line.split(), "--out", "made")
+    assert not Path("made").exists()
 
 
 def test_a_damaged_lesson_is_named_and_the_rest_is_kept(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:

@@ -45,11 +45,6 @@ def test_learners_are_taught_once_and_compared(kurt2rt: CommandLine) -> None:
     assert kept.stat().st_mtime_ns == before
 
 
-def test_unknown_learner_is_refused(kurt2rt: CommandLine) -> None:
-    assert "there is no such learner" in kurt2rt.refused("study", "compare", "--learner", "deep-thought", *SHORT)
-    assert not Path("made").exists()
-
-
 def test_changed_helper_of_a_learner_is_named_as_the_difference(kurt2rt: CommandLine) -> None:
     Path("my_asking.py").write_text(f"import my_helper\n{NEVER}", encoding="utf-8")
     Path("my_helper.py").write_text("HERE = 1\n", encoding="utf-8")

@@ -7,10 +7,6 @@ from tests.cli.helpers import CommandLine
 SHORT = ("--set", "teaching.supervised_s=5", "--set", "teaching.corrections_s=0", "--set", "exam.duration_s=2")
 
 
-def test_train_refuses_a_batch_of_one_robot(kurt2rt: CommandLine) -> None:
-    assert "give --seeds" in kurt2rt.refused("train", *SHORT, "--engine", "compiled")
-
-
 def test_train_goes_on_in_no_folder_in_which_a_witness_differs(kurt2rt: CommandLine) -> None:
     words = ("train", *SHORT, "--seeds", "1", "--jobs", "1", "--engine", "compiled")
     assert kurt2rt(*words).exit_code == 0

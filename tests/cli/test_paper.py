@@ -62,12 +62,6 @@ def test_a_task_of_ones_own_is_taught_examined_and_reported(kurt2rt: CommandLine
     assert ": task)" in line  # what differs
 
 
-def test_an_unknown_task_is_refused_before_anything_runs(kurt2rt: CommandLine) -> None:
-    said = kurt2rt.refused("study", "paper", "--task", "sledging", "--out", "made")
-    assert unknown_name("tasks", "sledging") in said
-    assert not Path("made").exists()
-
-
 def test_an_unknown_world_is_refused_before_anything_runs(kurt2rt: CommandLine, tmp_path: Path) -> None:
     said = kurt2rt.refused("study", "paper", "--task", short_task(tmp_path, world="nowhere"), "--out", "made")
     assert unknown_name("worlds", "nowhere") in said
@@ -78,10 +72,6 @@ def test_a_folder_that_cannot_be_made_is_refused(kurt2rt: CommandLine, tmp_path:
     Path("made").write_text("a file")
     said = kurt2rt.refused("study", "paper", "--task", short_task(tmp_path), "--out", "made")
     assert "made" in said
-
-
-def test_seeds_that_are_none_are_refused(kurt2rt: CommandLine) -> None:
-    assert "'many'" in kurt2rt.misused("study", "paper", "--seeds", "many")
 
 
 @pytest.mark.deep
@@ -135,12 +125,3 @@ def test_paper_goes_on_in_the_batch_where_it_was_on_the_bus(kurt2rt: CommandLine
     assert path.stat().st_mtime_ns == stamp_ns
     # The robot of the bus has a witness all the same, so that the study has its share of them.
     assert len(list(Path("made/results/witnesses").rglob("*.json"))) == 2
-
-
-@pytest.mark.deep
-def test_paper_quick_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine) -> None:
-    for engine in ("compiled", "can"):
-        told = kurt2rt("study", "paper", "--quick", "--jobs", "2", "--out", engine, "--engine", engine)
-        assert told.exit_code == 0, told.err
-    assert results_in("compiled") == results_in("can")
-    assert len(results_in("can")) == 28

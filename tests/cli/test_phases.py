@@ -5,22 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.helpers import CommandLine, results_in, unknown_name
+from tests.cli.helpers import CommandLine, results_in
 
 QUICK = ("study", "phases", "--quick", "--seeds", "0", "--jobs", "1")
-
-
-def test_phases_of_a_task_without_phases_are_refused(kurt2rt: CommandLine) -> None:
-    said = kurt2rt.refused("study", "phases", "--task", "circle", "--out", "made")
-    assert "task circle: " in said
-    assert "`phases:`" in said
-    assert not Path("made").exists()
-
-
-def test_phases_with_an_unknown_world_are_refused(kurt2rt: CommandLine) -> None:
-    said = kurt2rt.refused("study", "phases", "--set", "phases.repair_worlds=[nowhere]", "--out", "made")
-    assert unknown_name("worlds", "nowhere") in said
-    assert not Path("made").exists()
 
 
 def alone(result: Path) -> tuple[str, bool, int]:

@@ -20,18 +20,6 @@ def test_device_that_is_not_paired_is_refused_with_the_remedy(kurt2rt: CommandLi
     assert kurt2rt.refused("ros").endswith("make one on the robot's machine: kurt2rt pair ros")
 
 
-@pytest.mark.parametrize(
-    ("words", "says"),
-    [
-        (("--namespace", "a b"), "use letters, digits and _, joined by /"),
-        (("--naming", "dds"), "bridge"),
-        (("--domain", "233"), "232"),
-    ],
-)
-def test_ros_names_that_cannot_be_are_refused(kurt2rt: CommandLine, words: tuple[str, ...], says: str) -> None:
-    assert says in kurt2rt.misused("ros", *words)
-
-
 @pytest.mark.deep
 def test_device_waits_for_robot_and_router_and_serves_them(kurt2rt: CommandLine, tmp_path: Path) -> None:
     kurt2rt("pair", "ros")

@@ -138,10 +138,6 @@ def test_run_can_log_is_read_by_other_tools(kurt2rt: CommandLine, tmp_path: Path
     assert " drive-2.log" in said.out
 
 
-def test_the_scripted_teacher_does_not_teach_ways_in_real_time(kurt2rt: CommandLine) -> None:
-    assert "kurt2rt train --task route" in kurt2rt.misused("run", "--auto", "--task", "route")
-
-
 def test_run_without_a_teacher_selects_the_named_behaviour(kurt2rt: CommandLine) -> None:
     words = ("run", "--seconds", "1.1", "--teacher", "none", "--task", "streets")
     assert "about straight_on" in kurt2rt(*words).out

@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
-from tests.cli.helpers import CommandLine, Running, running
+from tests.cli.helpers import Running, running
 from tests.service.systemd.manager import Manager, manager
 
 
@@ -90,8 +90,3 @@ def test_guards_of_a_unit_preempt_its_loop(tmp_path: Path, kurt2rt_process: Call
     program.wait_for("stands until Go: the robot program was started")
     assert priorities_of(program.process.pid) == [21, 21, 20]  # the second guard, the signal thread, the loop
     assert program.end(signal.SIGTERM).exit_code == 0
-
-
-@pytest.mark.parametrize("words", [("--teacher", "none"), ("--auto",)])
-def test_a_unit_has_a_person_to_say_go(kurt2rt: CommandLine, words: tuple[str, ...]) -> None:
-    assert "--service" in kurt2rt.misused("run", "--service", *words)

@@ -7,9 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from config.settings import load_settings
-from kurt2rt.experiments.search.settings import SearchSettings
-from tests.cli.helpers import CommandLine, unknown_name
+from tests.cli.helpers import CommandLine
 from tests.experiments.search.tiny import SHORT, tiny_search
 from tests.experiments.study.page import Page
 
@@ -61,10 +59,6 @@ def test_wrong_search_is_refused_before_anything_runs(
     assert not Path("made").exists()
 
 
-def test_unknown_search_is_refused_with_those_that_are(kurt2rt: CommandLine) -> None:
-    assert unknown_name("searches", "sledging") in kurt2rt.refused("study", "search", "sledging")
-
-
 def test_search_without_optuna_names_its_extra(
     kurt2rt: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -73,7 +67,3 @@ def test_search_without_optuna_names_its_extra(
         monkeypatch.delitem(sys.modules, name)
     line = kurt2rt.refused("study", "search", tiny_search(tmp_path), *WORDS)
     assert "pip install '.[studies]' in kurt2rt's folder" in line
-
-
-def test_tiny_search_is_a_valid_file(tmp_path: Path) -> None:
-    assert load_settings(tiny_search(tmp_path), SearchSettings).trials == 3

@@ -49,19 +49,6 @@ def test_many_robots_leave_a_report_and_are_not_taught_again(kurt2rt: CommandLin
     assert kept.stat().st_mtime_ns == before
 
 
-@pytest.mark.parametrize("words", [("--decisions", "8"), ("--basic", "here")])
-def test_route_options_of_another_task_are_refused(kurt2rt: CommandLine, words: tuple[str, ...]) -> None:
-    line = kurt2rt.misused("train", "--task", "circle", *words)
-    assert words[0] in line
-    assert "task circle" in line
-
-
-def test_one_robot_is_taught_one_route(kurt2rt: CommandLine) -> None:
-    said = kurt2rt.misused("train", "--task", "route", "--decisions", "8", "--decisions", "12")
-    assert "--seeds" in said
-    assert "7 decisions" in kurt2rt.refused("train", "--task", "route", "--decisions", "7")
-
-
 def test_streets_that_nobody_taught_are_asked_for(kurt2rt: CommandLine, streets: Path) -> None:
     said = kurt2rt.refused("train", "--task", "route", "--seed", "3", "--basic", streets)
     assert f"{streets / 'streets-3.knowledge'}: " in said

@@ -30,11 +30,6 @@ def test_robots_are_taught_on_once_and_reported(kurt2rt: CommandLine) -> None:
     assert kept.stat().st_mtime_ns == before
 
 
-def test_home_is_refused_as_the_new_world(kurt2rt: CommandLine) -> None:
-    assert "world a" in kurt2rt.refused("study", "transfer", "--world", "a", *SHORT)
-    assert not Path("made").exists()
-
-
 @pytest.mark.deep
 def test_transfer_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine) -> None:
     words = (*WORDS, "--seeds", "1100", *SHORT[:-1])

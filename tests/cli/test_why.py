@@ -53,15 +53,6 @@ def test_a_moment_behind_the_end_is_refused(kurt2rt: CommandLine, tmp_path: Path
     assert " 1.99 s;" in kurt2rt.misused("why", short, "--at", "500")
 
 
-def test_why_with_contradictory_options_is_refused_unread(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    for words, said in (
-        (("--at", "3", "--from", "2"), "--from and --to"),
-        (("--from", "3", "--to", "2"), "--from 3"),
-        (("--picture", "why.txt"), ".png"),
-    ):
-        assert said in kurt2rt.misused("why", tmp_path / "none.mcap", *words)
-
-
 def test_why_live_asks_a_running_robot_as_an_onlooker(
     kurt2rt: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -80,8 +71,3 @@ def test_ask_why_without_a_robot_raises_no_answer(tmp_path: Path) -> None:
     with pytest.raises(NoAnswerError, match=re.escape(str(no_robot("127.0.0.1", 9, ONLOOKER)))) as refused:
         ask_why(device, "127.0.0.1", 9, lambda _: load_robot(), patience_s=0.1)
     assert refused.value.code is NoAnswer.NO_ROBOT
-
-
-def test_now_is_no_moment_of_a_run(kurt2rt: CommandLine) -> None:
-    assert "--live" in kurt2rt.misused("why", "--live", "--at", "3")
-    assert "--device" in kurt2rt.misused("why", "--device", "phone")
