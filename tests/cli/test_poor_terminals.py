@@ -11,9 +11,7 @@ from kurt2rt.cli.live_screen import LiveScreen
 from kurt2rt.cli.qr_code import NO_CODE
 from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages
 from tests.cli.helpers import CommandLine
-from tests.runs.replay.stored_runs import STORED
 
-WALLS = str(STORED / "walls.mcap")
 REPORTS: tuple[tuple[str, ...], ...] = (
     ("--version",),
     ("plugin", "list"),
@@ -24,8 +22,6 @@ REPORTS: tuple[tuple[str, ...], ...] = (
     ("knowledge", "list", "."),
     ("knowledge", "show", "taught.knowledge", "--rla", "1"),
     ("knowledge", "check", "taught.knowledge"),
-    ("why", WALLS, "--at", "1"),
-    ("why", WALLS, "--to", "5"),
     ("exam", "taught.knowledge", "--world", "nowhere-\udcff"),
 )
 
