@@ -3,7 +3,7 @@
 import copy
 import random
 from collections import deque
-from collections.abc import Callable, Set
+from collections.abc import Callable
 from typing import NamedTuple
 
 import can
@@ -15,16 +15,12 @@ _MOST_WAITING = 4096
 
 
 class CableFaults(NamedTuple):
-    """Faults of a poor cable; a share is a probability, drawn for each receiver."""
+    """Faults of a poor cable."""
 
     delay_s: float = 0.0
     """Longest time on the way; each frame takes a random part of it, and none overtakes another."""
     lost: float = 0.0
-    lost_ids: Set[int] = frozenset()
-    """Identifiers of which every frame is lost."""
-    doubled: float = 0.0
-    overtaken: float = 0.0
-    """Share of frames that arrive after the next one."""
+    """Probability that a frame is lost, drawn for each receiver."""
 
 
 SOUND = CableFaults()
@@ -56,17 +52,16 @@ class Cable:
         """Deliver a copy of a frame to every end; the sender gets it once, as its confirmation."""
         at_s = self._arrival_s()
         for end in self._ends:
-            if not is_heard(frame, end.accepted_ids):
-                continue
-            if end is sender or self._faults is SOUND:
+            if is_heard(frame, end.accepted_ids) and (end is sender or not self._is_lost()):
                 end.deliver(frame, at_s, own=end is sender)
-            else:
-                self._deliver_poorly(frame, end, at_s)
 
     def leave(self, end: "CableInterface") -> None:
         """Remove an end; repeated calls do nothing."""
         if end in self._ends:
             self._ends.remove(end)
+
+    def _is_lost(self) -> bool:
+        return self._faults.lost > 0.0 and self._chance.random() < self._faults.lost
 
     def _arrival_s(self) -> float:
         if self._faults.delay_s:
@@ -74,22 +69,6 @@ class Cable:
             self._carried_at_s = max(self._carried_at_s, at_s)
             return self._carried_at_s
         return self.now_s()
-
-    def _deliver_poorly(self, frame: can.Message, end: "CableInterface", at_s: float) -> None:
-        faults = self._faults
-        if frame.arbitration_id in faults.lost_ids or self._happens(faults.lost):
-            return
-        overtaken, end.overtaken = end.overtaken, None
-        if overtaken is None and self._happens(faults.overtaken):
-            end.overtaken = frame
-            return
-        for _ in range(2 if self._happens(faults.doubled) else 1):
-            end.deliver(frame, at_s, own=False)
-        if overtaken is not None:
-            end.deliver(overtaken, at_s, own=False)
-
-    def _happens(self, share: float) -> bool:
-        return share > 0.0 and self._chance.random() < share
 
 
 class CableInterface:
@@ -103,8 +82,6 @@ class CableInterface:
         """Frames in the order of their arrival, also those that are still on the way."""
         self.accepted_ids: frozenset[int] | None = None
         """Accepted identifiers; None accepts all."""
-        self.overtaken: can.Message | None = None
-        """Frame that arrives after the next one."""
         self._open = True
         self.overruns = 0
         """Number of frames dropped because the queue was full."""

@@ -1,26 +1,24 @@
-"""Robot over a poor cable: it drives on where it may, stands where it must, and equal seeds give equal runs."""
+"""Robot over a poor cable: it drives on, and equal seeds give equal runs."""
 
 import random
-from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from collections.abc import Callable
+from contextlib import closing
 
 import pytest
 
 from hal.bus import CONTROL_ID, CanBus
-from hal.guard_reason import GuardReason
-from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
+from hal.robot import GuardResult, WheelSpeeds
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from simbridge.links import CanLine
 from simbridge.robot_simulation import Kurt2Simulation
 from tests.faults.cable import SOUND, Cable, CableFaults
-from tests.simbridge.rig import CODEC, ROBOT
+from tests.simbridge.rig import ROBOT
 
 TURN = WheelSpeeds(0.2, -0.2)
 TICK_S = ROBOT.cycle_s
 PHASE_S = 0.005
 LOSSY = CableFaults(lost=0.1)
-ENCODER_ID = CODEC.message("ENCODER").frame_id
 
 
 class CableLine(CanLine):
@@ -36,37 +34,6 @@ class CableLine(CanLine):
         self._now_s += TICK_S - PHASE_S
         step_robot()
         self._now_s += PHASE_S
-
-
-class Drive:
-    """Driver that turns the robot on the spot, tick by tick."""
-
-    def __init__(self, simulation: Kurt2Simulation) -> None:
-        self.simulation = simulation
-        self.ticks = 0
-        self.readings = simulation.robot.sense(0.0)
-        self.grant = GuardResult(STANDSTILL, (), latched=False)
-
-    @property
-    def now_s(self) -> float:
-        return self.ticks * TICK_S
-
-    def until(self, time_s: float) -> list[GuardResult]:
-        """Return the guard's results of each tick up to this time."""
-        grants = []
-        while self.now_s < time_s - TICK_S / 2:
-            self.ticks += 1
-            self.simulation.step()
-            self.readings = self.simulation.robot.sense(self.now_s)
-            self.grant = self.simulation.robot.drive(TURN, self.now_s, self.now_s)
-            grants.append(self.grant)
-        return grants
-
-
-@contextmanager
-def driving(faults: CableFaults) -> Iterator[Drive]:
-    with closing(Kurt2Simulation(ROBOT, "a", 1, "cable", open_line=lambda: CableLine(faults))) as simulation:
-        yield Drive(simulation)
 
 
 async def policy_drives(open_line: Callable[[], CanLine], seed: int = 1, seconds: float = 1.5, world: str = "a") -> str:
@@ -93,35 +60,16 @@ async def test_lossy_cable_same_seed_gives_the_same_run() -> None:
     assert await policy_drives(lambda: CableLine(LOSSY, seed=4)) != first
 
 
-@pytest.mark.parametrize("faults", [LOSSY, CableFaults(overtaken=0.2)])
-def test_robot_over_a_poor_cable_keeps_turning(faults: CableFaults) -> None:
-    with driving(faults) as drive:
-        grants = drive.until(7.0)
-    moving = sum(grant.wheel_speeds == TURN for grant in grants)
-    assert moving > 0.95 * len(grants)
+def test_robot_over_a_lossy_cable_keeps_turning() -> None:
+    with closing(Kurt2Simulation(ROBOT, "a", 1, "cable", open_line=lambda: CableLine(LOSSY))) as simulation:
+        grants: list[GuardResult] = []
+        for tick in range(1, 701):
+            simulation.step()
+            now_s = tick * TICK_S
+            simulation.robot.sense(now_s)
+            grants.append(simulation.robot.drive(TURN, now_s, now_s))
+    assert sum(grant.wheel_speeds == TURN for grant in grants) > 0.95 * len(grants)
     assert not any(grant.latched for grant in grants)
-
-
-def test_robot_without_encoder_frames_stands() -> None:
-    with driving(CableFaults(lost_ids=frozenset({ENCODER_ID}))) as drive:
-        drive.until(0.5)
-        assert drive.grant.reasons == (GuardReason.ENCODER_STALE,)
-        assert drive.simulation.simulated_robot.wheel_speeds == (0.0, 0.0)
-
-
-def test_robot_whose_frames_come_twice_stands() -> None:
-    """It cannot tell them from those of a second sender."""
-    with driving(CableFaults(doubled=0.2)) as drive:
-        drive.until(2.0)
-        assert drive.grant.latched
-        assert drive.grant.reasons == (GuardReason.FOREIGN_TELEMETRY,)
-
-
-def test_robot_over_a_cable_of_many_ticks_stands() -> None:
-    with driving(CableFaults(delay_s=0.4)) as drive:
-        drive.until(1.0)
-        assert drive.grant.reasons == (GuardReason.BUS_BLOCKED,)
-        assert drive.simulation.simulated_robot.wheel_speeds == (0.0, 0.0)
 
 
 @pytest.mark.deep

@@ -17,14 +17,6 @@ class TestRlaLearner(LearnerTests):
         return RlaLearner(setting)
 
 
-class TestParrot(LearnerTests):
-    def make(self, setting: LearnerSetting) -> Learner:
-        return Parrot(setting)
-
-    def setting(self) -> LearnerSetting:
-        return SETTING
-
-
 class Made(LearnerTests):
     """Tests of any learner."""
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from contextlib import closing
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -11,7 +10,6 @@ from config.settings import SettingsError
 from hal.robot_settings import load_robot
 from kurt2rt.checks.plugins.task_tests import TaskTests
 from simbridge.contracts.robot_kind import simulations_of
-from tests.plugin_packages import write_parts, write_repertoire, write_task
 
 TASKS = ("circle", "eight", "fleeing", "wall_following", "streets", "route", "errands")
 TASKS_OF_ROBOTS = ("school/circle", "school/fleeing", "school/wall_following", "turtlebot/fleeing")
@@ -21,17 +19,6 @@ class TestShippedTasks(TaskTests):
     @pytest.fixture(autouse=True, params=(*TASKS, *TASKS_OF_ROBOTS))
     def named(self, request: pytest.FixtureRequest) -> None:
         self.task = request.param
-
-
-class TestTaskOfAnotherAuthor(TaskTests):
-    @pytest.fixture(autouse=True)
-    def named(self, plugin_folder: Path) -> None:
-        write_parts(plugin_folder, "parts_tested")
-        wiggle = {"kind": "parts_tested:Wiggling", "name": "wiggle"}
-        repertoire = write_repertoire(plugin_folder, wiggle)
-        kinds = {"policy": "Turning", "judge": "Moving", "metric": "Reach"}
-        parts = {part: {"kind": f"parts_tested:{kind}"} for part, kind in kinds.items()}
-        self.task = str(write_task(plugin_folder, repertoire=str(repertoire), **parts))
 
 
 class Part:

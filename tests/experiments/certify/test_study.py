@@ -94,11 +94,6 @@ def test_drives_in_streets_are_those_of_the_bus(name: str) -> None:
     require_equal(task, events, [Run(number, world) for number, world in enumerate(worlds, start=20_010)])
 
 
-def test_start_in_sight_is_that_of_the_bus() -> None:
-    task = load_task("circle", changes={"exam.duration_s": "2", "exam.start": "in_sight"})
-    require_equal(task, (), [Run(4, "one_object")])
-
-
 def test_certificate_has_all_runs_and_equal_witnesses(made: Made) -> None:
     _, plan = made
     drives = read_drives(plan)

@@ -1,7 +1,5 @@
 """A comparison on the simulated robot: the same robots, teacher and exams for all pupils."""
 
-from collections.abc import Sequence
-from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,13 +8,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from kurt2rt.core.event_store import InMemoryEventStore
-from kurt2rt.core.learner.learner import Label, Why
-from kurt2rt.core.learner.learner_team import LearnerTeam
+from kurt2rt.core.learner.learner import Why
 from kurt2rt.core.learner.learners import NoLearnerError
 from kurt2rt.core.learner.rla_learner import RlaLearner
-from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.compare import (
     PUPILS,
@@ -29,18 +23,9 @@ from kurt2rt.experiments.compare import (
     make_plan,
     read_rows,
 )
-from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, feature_table
-from kurt2rt.experiments.lockstep.curriculum import run_lesson
-from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import ON_BUS, Engine, Engines
-from kurt2rt.experiments.lockstep.lesson import GivenLesson, teach
-from kurt2rt.experiments.lockstep.lesson_plan import plan_of
-from kurt2rt.experiments.lockstep.runtimes import TrainingStore
-from kurt2rt.experiments.study.examination import run_checkpoints
 from kurt2rt.experiments.study.study_plan import StudyPlan
-from simbridge.contracts.batch import CallbackMind
-from tests.experiments.helpers import ROBOT, STAGE, short_task
-from tests.experiments.rows import row
+from tests.experiments.helpers import short_task
 from tests.experiments.study.here import carry_out, parts_in
 
 AFTER = (2, 5)
@@ -92,51 +77,6 @@ def test_each_pupil_is_examined_after_presses_and_at_the_end(done: tuple[Row, ..
         assert all(len(each.drives) == 1 for each in outcome.checkpoints)
 
 
-Known = tuple[list[TeachingEvent], tuple[Label, ...]]
-
-
-def checkpoints_of(folder: Path, task: TaskSettings, team: LearnerTeam | None) -> tuple[GivenLesson, list[Known]]:
-    """Return a lesson, and the knowledge that is examined after its presses and at the end."""
-    examined: list[Known] = []
-
-    async def examine(events: Sequence[TeachingEvent], labels: Sequence[Label]) -> tuple[DriveRow, ...]:
-        examined.append((list(events), tuple(labels)))
-        return (row(),)
-
-    async def lesson() -> GivenLesson:
-        file = folder / "knowledge"
-        given = await run_lesson(STAGE, ROBOT, task, file, seed=3903, report=lambda *_: None, learners=team)
-        points = await run_checkpoints(given, (*AFTER, given.result.counts.presses), ROBOT.cycle_s, examine)
-        assert [each.presses for each in points] == [*AFTER, given.result.counts.presses]
-        return given
-
-    return anyio.run(lesson), examined
-
-
-def events_until_press(task: TaskSettings, most: int) -> list[TeachingEvent]:
-    """Return the lessons of a training run that its plan ends before another press."""
-    store = InMemoryEventStore()
-
-    async def lesson() -> None:
-        with closing(STAGE.open(task.teaching.world, 3903, "lesson")) as simulation:
-            plan = replace(plan_of(task), most_presses=most)
-            training = TrainingStore(store)
-            await teach(simulation, ROBOT, task, training, seed=3903, on_progress=lambda _: None, plan=plan)
-
-    anyio.run(lesson)
-    return store.events
-
-
-def test_checkpoint_knows_what_so_many_presses_teach(tmp_path: Path) -> None:
-    task = taught_by_named(short_task(15.0, 15.0), "ordinary")
-    _, (*examined, end) = checkpoints_of(tmp_path, task, None)
-    assert len(examined) == len(AFTER)
-    for (events, labels), presses in zip(examined, AFTER, strict=True):
-        assert events == events_until_press(task, presses)
-        assert labels == ()
-    assert len(end[0]) > len(examined[-1][0])
-
-
 @pytest.mark.parametrize("text", ["k-nn=wide", "rla=1", "no-such"])
 def test_pupil_of_another_text_is_refused(text: str) -> None:
     with pytest.raises(NoLearnerError):
@@ -170,21 +110,3 @@ def test_pupil_that_fails_is_driven_on_the_bus(tmp_path: Path) -> None:
 def test_whole_lesson_of_a_pupil_is_equal(name: str, task: str, tmp_path: Path) -> None:
     taught = taught_by_named(load_task(task, changes={"exam.duration_s": "40"}), "ordinary")
     require_equal(tmp_path, Pupil(name), taught, seed=3904)
-
-
-def test_error_of_a_python_mind_ends_the_drive() -> None:
-    task = short_task(exam_s=6.0)
-
-    def choose(_behaviour: str, situation: NDArray[np.float64]) -> str:
-        raise ZeroDivisionError(f"{len(situation)} numbers")
-
-    definition = load_situation(task.situation, ROBOT.infrared.names)
-    features = feature_table(definition, ROBOT, np.ones(definition.dimensions), task)
-    simulation = STAGE.open("a", 3903, "exam")
-    try:
-        batch = STAGE.open_batch([simulation], [CallbackMind(choose, features)], build_drive_settings(ROBOT, task))
-        with pytest.raises(ZeroDivisionError, match=f"{definition.dimensions} numbers"):
-            batch.drive([0], 10)
-        assert batch.reason_to_leave(0)
-    finally:
-        simulation.close()

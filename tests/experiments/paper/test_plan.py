@@ -81,7 +81,7 @@ def judged(plan: StudyPlan[PaperExtent], seeds: range, settings: ExperimentSetti
     return list(reasons_not_to_judge(replace(plan, seeds=tuple(seeds), jobs=jobs)))
 
 
-def test_reasons_not_to_judge_are_known_or_too_few_rooms_and_a_part() -> None:
+def test_reasons_not_to_judge_are_seeds_rooms_and_a_part() -> None:
     plan = planned("wall_following", seeds=(100,))
     assert judged(plan, NOT_SEEN) == []
     (reason,) = judged(plan, range(100, 119))
