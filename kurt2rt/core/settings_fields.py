@@ -1,5 +1,8 @@
-"""Types of the fields that several schemas of settings have."""
+"""Fields that several schemas of settings have, and the fingerprint by which knowledge is bound to some."""
 
+import hashlib
+import json
+from collections.abc import Mapping
 from typing import Annotated
 
 from pydantic import AfterValidator, Field
@@ -22,3 +25,8 @@ def or_left_out(says: str) -> AfterValidator:
         return value
 
     return AfterValidator(given)
+
+
+def fingerprint(content: Mapping[str, object]) -> str:
+    """Return 16 hexadecimal digits that change with the content, which JSON can hold."""
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]

@@ -1,7 +1,5 @@
 """Schema of `config/critics/*.yaml`, and the sensors on each side of a robot for the critic."""
 
-import hashlib
-import json
 import math
 from pathlib import Path
 from typing import Annotated, Self
@@ -16,7 +14,7 @@ from config.settings import Settings, load_settings
 from config.settings_files import find_config
 from hal.robot_settings import InfraredSettings, RobotSettings, SensorSettings
 from kurt2rt.core.rla.condition import LevelFeatures
-from kurt2rt.core.settings_fields import Metres, Name, Share
+from kurt2rt.core.settings_fields import Metres, Name, Share, fingerprint
 
 Sensors = Annotated[tuple[str, ...], Field(min_length=1)]
 
@@ -290,7 +288,7 @@ class CriticSettings(Settings):
         """
         perception = self.perception.model_dump(mode="json", exclude_none=True)
         content = {"names": list(self.names), "perception": perception}
-        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
+        return fingerprint(content)
 
 
 def load_critic(name_or_path: str | CriticSettings = "basic") -> CriticSettings:

@@ -1,7 +1,5 @@
 """Schema of `config/mid_levels/*.yaml`, and the protocol of mid-level situations."""
 
-import hashlib
-import json
 from abc import abstractmethod
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,7 +17,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.core.decision.decision import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector, JunctionDetectorSettings
 from kurt2rt.core.rla.condition import LevelFeatures, Metric, Space
-from kurt2rt.core.settings_fields import Name, Share
+from kurt2rt.core.settings_fields import Name, Share, fingerprint
 
 
 class MidSituation(Protocol):
@@ -134,7 +132,7 @@ class MidSettings(Settings):
             "junctions": self.junctions.model_dump(mode="json"),
             "situation": self.situation.model_dump(mode="json"),
         }
-        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
+        return fingerprint(content)
 
     def build(self, robot: RobotSettings) -> MidSituation:
         """Return the situation at power-on for a robot. Raises config.settings.SettingsError."""

@@ -1,7 +1,5 @@
 """Schema of `config/situations/*.yaml`: the features of a situation, and the hash that knowledge is bound to."""
 
-import hashlib
-import json
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from typing import Annotated, Literal
@@ -13,6 +11,7 @@ from pydantic import Field
 from config.settings import Settings, SettingsError, load_settings
 from config.settings_files import find_config
 from hal.robot import HIGHEST_COUNTS
+from kurt2rt.core.settings_fields import fingerprint
 from simbridge.contracts.batch import FeatureKind
 
 AVERAGED = " (10 s average)"
@@ -179,7 +178,7 @@ class SituationDefinition(Settings):
     def hash(self, sensors: tuple[str, ...], kind: str) -> str:
         """Return the fingerprint of definition, sensor order and kind of robot; other knowledge is refused."""
         content = {"definition": self.model_dump(mode="json"), "sensors": list(sensors), "kind": kind}
-        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
+        return fingerprint(content)
 
 
 def load_situation(name_or_path: str, sensors: tuple[str, ...]) -> SituationDefinition:

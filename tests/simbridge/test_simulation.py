@@ -1,4 +1,4 @@
-"""A robot over a RobotLink is simulated as KURT2 is: the same body, sensors and worlds behind another link."""
+"""Openers of simulations: many of KURT2 at once, and of a robot over a RobotLink, which is simulated as KURT2 is."""
 
 import pickle
 import random
@@ -12,17 +12,33 @@ from config.settings import SettingsError
 from hal.linked_robot import LinkedRobot
 from hal.robot_settings import RobotSettings
 from hal.tap import Tap
-from simbridge.contracts.batch import BatchFactory
+from simbridge.contracts.batch import BatchFactory, Start
 from simbridge.contracts.batch_lesson import LessonFactory
 from simbridge.contracts.simulation import Pose, SimulationFactory
 from simbridge.robot.noise import Noise
 from simbridge.robot.world import World
+from simbridge.robot_simulation import Kurt2Simulation
 from simbridge.simulation import Kurt2SimulationFactory, LinkSimulationFactory
 from tests.patience import PATIENCE_S
+from tests.simbridge.batch.both_ways import FACTORY
 from tests.simbridge.direct_link import DirectLink
 from tests.simbridge.rig import ROBOT
 
-FACTORY = LinkSimulationFactory(ROBOT, open_link=DirectLink)
+
+def test_simulations_opened_at_once_equal_single_ones() -> None:
+    starts = [Start("a", 1), Start("rooms-7", 2), Start("a", 3)]
+    for start, opened in zip(starts, FACTORY.open_all(starts, "exam"), strict=True):
+        assert isinstance(opened, Kurt2Simulation)
+        with closing(opened), closing(FACTORY.open(*start, "exam")) as single:
+            assert opened.simulated_robot.state_hash() == single.simulated_robot.state_hash()
+
+
+def test_unknown_world_is_refused_among_known_ones() -> None:
+    with pytest.raises(SettingsError, match="nowhere"):
+        FACTORY.open_all([Start("a", 1), Start("nowhere", 2)], "exam")
+
+
+LINKED = LinkSimulationFactory(ROBOT, open_link=DirectLink)
 
 
 class CompassSensors:
@@ -53,9 +69,9 @@ def test_link_simulation_has_sensors_of_the_plug_in() -> None:
 
 
 def test_link_factory_pickles_and_has_no_batch() -> None:
-    again: SimulationFactory = pickle.loads(pickle.dumps(FACTORY))
-    assert again.settings_of("a") == FACTORY.settings_of("a")
-    assert not isinstance(FACTORY, BatchFactory | LessonFactory)
+    again: SimulationFactory = pickle.loads(pickle.dumps(LINKED))
+    assert again.settings_of("a") == LINKED.settings_of("a")
+    assert not isinstance(LINKED, BatchFactory | LessonFactory)
     assert isinstance(Kurt2SimulationFactory(ROBOT), BatchFactory)
 
 
@@ -67,11 +83,11 @@ def test_link_factory_tap_is_refused() -> None:
 
     tap: Tap = Silent()
     with pytest.raises(SettingsError, match="no CAN frames"):
-        FACTORY.live("a", 1, tap)
+        LINKED.live("a", 1, tap)
 
 
 def test_link_simulation_lives_in_real_time() -> None:
-    with FACTORY.live("a", 1) as live:
+    with LINKED.live("a", 1) as live:
         assert isinstance(live.robot, LinkedRobot)
         assert live.robot.watchdog.running
         deadline_s = time.monotonic() + PATIENCE_S
