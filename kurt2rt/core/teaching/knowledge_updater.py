@@ -19,6 +19,8 @@ from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.teaching.late_press import TeacherDelay
 from kurt2rt.core.teaching.mid_commands import MidCommands
 
+_REWARDED_PHASES = (Phase.REINFORCEMENT, Phase.CRITIC)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HandlerParts:
@@ -78,9 +80,6 @@ def require_rla(rla_id: int, system: RlaSystem) -> Rla:
     if rla is None:
         raise CommandRefusedError(RefusalCode.NO_RLA, rla=rla_id)
     return rla
-
-
-_REWARDED_PHASES = (Phase.REINFORCEMENT, Phase.CRITIC)
 
 
 class KnowledgeUpdater:

@@ -44,7 +44,7 @@ class MidHistory:
             rla_id: RLA that commanded; None if the level asked or a teacher commanded.
         """
         self._newest_tick = tick
-        last = self.newest
+        last = self._snapshots[-1] if self._snapshots else None
         if last is None or last.vector is not vector or last.rla_id != rla_id:
             self._snapshots.append(MidSnapshot(tick, vector, rla_id))
 
