@@ -147,8 +147,8 @@ class DevicePages:
         self._site = site
         self._pages: Mapping[str, _DevicePage] = {}
         # A visitor without a token or cookie of any device gets the refusals of this middleware.
-        nobody = Access("", secrets.token_urlsafe(), site.names, site.public, address_command=site.address_command)
-        self._refusal = AuthMiddleware(_no_app, nobody)
+        stranger = Access("", secrets.token_urlsafe(), site.names, site.public, address_command=site.address_command)
+        self._refusal = AuthMiddleware(_no_app, stranger)
 
     def serve(self, devices: Collection[Device]) -> None:
         """Serve these devices from now on, and close the connections of devices that were revoked or renewed."""
