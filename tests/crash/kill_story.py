@@ -26,7 +26,7 @@ from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.standing import STARTED
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import Correct, Resume, Reward, SetPhase, Take, Teach, Undo
-from kurt2rt.knowledge.journal.entry import StoredEntry
+from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.teacher.client.answer import NoAnswerError
@@ -188,7 +188,7 @@ class KillStory:
         self._longest_life_s = longest_life_s
         self._chance = random.Random(seed)
         self._knowledge = folder / "knowledge"
-        self._rows: list[StoredEntry] = []
+        self._rows: list[JournalEntry] = []
         self._acknowledged: set[int] = set()
         self._recordings = KilledRecordings(folder / "runs")
         self._start_s = START_S

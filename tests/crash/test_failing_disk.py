@@ -66,10 +66,10 @@ class StuckJournal(Journal):
     stuck = True
     tries = 0
 
-    def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
+    def append(self, entries: Sequence[JournalEntry], statistics: Statistics | None = None) -> list[Receipt]:
         if self.stuck:
             raise ReconnectRequiredError(KnowledgeCode.LOCKS_STUCK, where=self.path, error="")
-        return super().append(entries)
+        return super().append(entries, statistics)
 
     def reconnect(self) -> None:
         self.tries += 1

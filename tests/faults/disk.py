@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import chain
 from pathlib import Path
 
+from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge
@@ -36,12 +37,12 @@ class FaultyJournal(Journal):
     is_over = False
     """True at the end: writes neither fail nor block any more."""
 
-    def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
+    def append(self, entries: Sequence[JournalEntry], statistics: Statistics | None = None) -> list[Receipt]:
         """Write the entries under the fault. Raises KnowledgeError if the fault refuses the write."""
         now_s = self.injection.time.now_s()
         fault = None if self.is_over else self.injection.acting_on("disk")
         if fault is None:
-            return super().append(entries)
+            return super().append(entries, statistics)
         match fault.kind:
             case "off" | "intermittent":
                 raise self._error("disk I/O error", sqlite3.SQLITE_IOERR)
@@ -52,12 +53,12 @@ class FaultyJournal(Journal):
             case "slow":
                 self._wait(min(now_s + fault.delay_s, fault.end_s))
             case "delayed":
-                receipts = super().append(entries)
+                receipts = super().append(entries, statistics)
                 self._wait(min(now_s + fault.delay_s, fault.end_s))
                 return receipts
             case "wrong":
                 pass  # the file itself was taken away
-        return super().append(entries)
+        return super().append(entries, statistics)
 
     def _wait(self, until_s: float) -> None:
         self.waits_until_s = until_s

@@ -16,7 +16,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.core.message_fields import Real, check_of, wire_error
 from kurt2rt.core.rla.statistics import Expectation, Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
+from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.event_codec import Id, Number, StoredText, decode_event, encode_event
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -34,7 +34,7 @@ _ABSENT = (None, [""])
 def collect_attachments(
     robot: RobotSettings,
     task: TaskSettings,
-    entries: Iterable[StoredEntry | JournalEntry] = (),
+    entries: Iterable[JournalEntry] = (),
     saved: Statistics | None = None,
 ) -> dict[str, bytes]:
     """Return all attachments of a run by name; call it before the first tick.
@@ -135,7 +135,7 @@ def decode_statistics(data: bytes) -> Statistics:
     )
 
 
-def _encode_lessons(entries: Iterable[StoredEntry | JournalEntry]) -> bytes:
+def _encode_lessons(entries: Iterable[JournalEntry]) -> bytes:
     """Encode lesson by lesson: a list of all lines before they are joined would be a run's peak of memory."""
     lines = bytearray()
     for each in entries:

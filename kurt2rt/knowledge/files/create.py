@@ -65,7 +65,7 @@ def _build_image(
             temp_file = Path(os.path.realpath(folder), "knowledge")
             try:
                 with Journal.open(temp_file, binding) as journal:
-                    _require_new(journal.append_and_checkpoint(entries, statistics), temp_file)
+                    _require_new(journal.append(entries, statistics), temp_file)
                     for name, text in notes.items():
                         journal.note(name, text)
                 with Journal.read_only(temp_file) as journal:

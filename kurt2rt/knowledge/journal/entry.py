@@ -1,4 +1,4 @@
-"""Rows of the journal: a lesson before it is written, a lesson that was written, and the receipt for it."""
+"""Rows of the journal: a lesson with its time, and the receipt for one that was written."""
 
 import zlib
 from dataclasses import dataclass
@@ -11,21 +11,11 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 @dataclass(frozen=True, slots=True)
 class JournalEntry:
-    """Lesson to be appended to the journal, with the time at which it was given."""
+    """Lesson of the journal, with the time at which it was given."""
 
     event: TeachingEvent
     stamped_at: str
     """Wall clock, UTC, ISO 8601; empty if it is unknown."""
-
-
-@dataclass(frozen=True, slots=True)
-class StoredEntry:
-    """Lesson as a row of the journal: its number there, and the time at which it was given."""
-
-    sequence: int
-    """1, 2, 3 ... without gaps, in the order of writing."""
-    event: TeachingEvent
-    stamped_at: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,16 +40,16 @@ def checksum(command_id: str, stamped_at: str, text: str) -> int:
     return zlib.crc32("\n".join((command_id, stamped_at, text)).encode(errors="surrogateescape"))
 
 
-def read_row(row: tuple[int, str, str, str, int], where: str) -> StoredEntry:
+def read_row(row: tuple[int, str, str, str, int], where: str) -> JournalEntry:
     """Return the entry in a row (sequence, command id, stamp, event, checksum).
 
     Raises:
         KnowledgeError: the row is damaged; its place is `where`.
     """
-    sequence, command_id, stamped_at, text, written_checksum = row
+    _, command_id, stamped_at, text, written_checksum = row
     # A page of zeros has rows, too, with empty columns.
     if all(isinstance(part, str) for part in row[1:4]):
         event = decode_event(text, where)
         if checksum(command_id, stamped_at, text) == written_checksum and event.origin.command_id == command_id:
-            return StoredEntry(sequence, event, stamped_at)
+            return JournalEntry(event, stamped_at)
     raise KnowledgeError(KnowledgeCode.ROW_CHANGED, where=where)

@@ -9,7 +9,7 @@ from kurt2rt.core.rla.events import EventFault, InvalidEventError, RlaCreated, S
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.knowledge.journal.entry import StoredEntry
+from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -26,7 +26,7 @@ def fold_journal(journal: Journal, radius: float) -> RlaSystem:
     return fold_entries(journal, journal.entries(), radius)
 
 
-def read_content(journal: Journal) -> tuple[list[StoredEntry], RlaSystem, Statistics]:
+def read_content(journal: Journal) -> tuple[list[JournalEntry], RlaSystem, Statistics]:
     """Return the lessons of a journal, the RLA system that they make, and the statistics, all of one moment.
 
     Raises:
@@ -36,7 +36,7 @@ def read_content(journal: Journal) -> tuple[list[StoredEntry], RlaSystem, Statis
     return entries, fold_entries(journal, entries, radius=math.inf), statistics
 
 
-def fold_entries(journal: Journal, entries: Iterable[StoredEntry], radius: float) -> RlaSystem:
+def fold_entries(journal: Journal, entries: Iterable[JournalEntry], radius: float) -> RlaSystem:
     """Return the RLA system that entries of the journal make, one after the other (fold, projection).
 
     Equal entries give an equal system with an equal hash; robot, replay, undo and merge all use this.
@@ -52,7 +52,7 @@ def fold_entries(journal: Journal, entries: Iterable[StoredEntry], radius: float
     binding = journal.binding
     others = {level: Space(len(features.feature_names), radius) for level, features in binding.levels.items()}
     system = RlaSystem(len(binding.feature_names), radius, others=others)
-    for entry in entries:
+    for sequence, entry in enumerate(entries, start=1):
         try:
             if isinstance(entry.event, RlaCreated):
                 _require_level(entry.event.rla.title, entry.event.rla.level, others)
@@ -60,7 +60,7 @@ def fold_entries(journal: Journal, entries: Iterable[StoredEntry], radius: float
                 _require_level(f"the situation {entry.event.name!r}", entry.event.level, others)
             system.apply(entry.event)
         except InvalidEventError as error:
-            where = f"{journal.path}: row {entry.sequence}"
+            where = f"{journal.path}: row {sequence}"
             raise KnowledgeError(KnowledgeCode.LESSON_MISFIT, where=where, error=event_error_text(error)) from error
     return system
 

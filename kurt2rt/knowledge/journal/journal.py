@@ -12,7 +12,7 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal import journal_file
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
-from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt, StoredEntry, checksum, read_row
+from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt, checksum, read_row
 from kurt2rt.knowledge.journal.event_codec import encode_event
 from kurt2rt.knowledge.journal.statistics_tables import TableChange, changes, read_statistics
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
@@ -101,20 +101,15 @@ class Journal:
             connection.close()
             raise
 
-    def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
-        """Write lessons, all or none, durable on return; return a receipt for each, in order.
+    def append(self, entries: Sequence[JournalEntry], statistics: Statistics | None = None) -> list[Receipt]:
+        """Write lessons, and the `statistics` after them, all or none, durable on return; return a receipt for each.
 
-        A known command id is not written twice. Raises KnowledgeError if the disk does not take them; none is written
-        then.
+        A known command id is not written twice. Raises KnowledgeError if the disk does not take them; nothing is
+        written then.
         """
-        with self._transaction():
-            return [self._append(entry) for entry in entries]
-
-    def append_and_checkpoint(self, entries: Sequence[JournalEntry], statistics: Statistics) -> list[Receipt]:
-        """Write lessons, and the statistics after them, in one transaction; return a receipt for each lesson.
-
-        Raises KnowledgeError if the disk does not take them; nothing is written then.
-        """
+        if statistics is None:
+            with self._transaction():
+                return [self._append(entry) for entry in entries]
         changed = self._changes_to(statistics)
         with self._writing(statistics):
             receipts = [self._append(entry) for entry in entries]
@@ -168,11 +163,11 @@ class Journal:
         journal_file.make_durable(self._connection, self.path)
         self._files = (self._files[0], journal_file.identities(self.path)[1])
 
-    def entries(self) -> list[StoredEntry]:
+    def entries(self) -> list[JournalEntry]:
         """Return all lessons in the order of writing. Raises KnowledgeError, naming file and row of a damaged one."""
         return list(self.iter_entries())
 
-    def read_all(self) -> tuple[list[StoredEntry], Statistics]:
+    def read_all(self) -> tuple[list[JournalEntry], Statistics]:
         """Return lessons and statistics of one moment, also while a robot writes both.
 
         Raises KnowledgeError, naming file and row of a damaged one.
@@ -185,7 +180,7 @@ class Journal:
                 if self._connection.in_transaction:
                     self._connection.execute("COMMIT")
 
-    def iter_entries(self) -> Iterator[StoredEntry]:
+    def iter_entries(self) -> Iterator[JournalEntry]:
         """Yield all lessons in the order of writing, of one moment.
 
         Raises KnowledgeError, naming file and row of a damaged one.

@@ -13,7 +13,7 @@ from kurt2rt.core.rla.rla import CRITIC, MID, PROGRAMS
 from kurt2rt.core.rla.statistics import Statistics, StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
-from kurt2rt.knowledge.journal.entry import StoredEntry
+from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import fold_entries, read_content
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
@@ -26,7 +26,7 @@ class OpenedKnowledge:
     """Journal that is open for teaching, with the lessons and statistics that it holds already."""
 
     journal: Journal
-    entries: tuple[StoredEntry, ...]
+    entries: tuple[JournalEntry, ...]
     """All rows, in the order of writing."""
     counter: StatisticsCounter
     """Goes on from the counts of the last checkpoint."""

@@ -20,7 +20,7 @@ from kurt2rt.core.rla.events import (
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics, follow_ups
-from kurt2rt.knowledge.journal.entry import StoredEntry
+from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import fold_entries, read_content
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.show.level_tables import RlaRow, basic_table, level_table, named_table
@@ -96,7 +96,7 @@ def _features(journal: Journal) -> dict[str, tuple[str, ...]]:
 
 
 def _rlas_as_data(
-    journal: Journal, entries: list[StoredEntry], system: RlaSystem, statistics: Statistics
+    journal: Journal, entries: list[JournalEntry], system: RlaSystem, statistics: Statistics
 ) -> dict[str, list[RlaRow]]:
     """Return the RLAs of each level, oldest first."""
     taught = {entry.event.origin.command_id: entry for entry in entries}
@@ -112,7 +112,7 @@ def _rlas_as_data(
     }
 
 
-def _rla_as_data(rla: Rla, entry: StoredEntry, system: RlaSystem, statistics: Statistics) -> RlaRow:
+def _rla_as_data(rla: Rla, entry: JournalEntry, system: RlaSystem, statistics: Statistics) -> RlaRow:
     appraisal, event = system.appraisal(rla.rla_id), entry.event
     return {
         "rla": rla.rla_id,
@@ -173,7 +173,7 @@ def _bound_to(journal: Journal) -> str:
     )
 
 
-def _summary(entries: list[StoredEntry], system: RlaSystem) -> str:
+def _summary(entries: list[JournalEntry], system: RlaSystem) -> str:
     if not entries:
         return "Nothing was taught yet."
     events = [entry.event for entry in entries]

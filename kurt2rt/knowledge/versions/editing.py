@@ -47,7 +47,7 @@ def append_with_values(journal: Journal, entries: Sequence[JournalEntry]) -> Non
     """
     new, dimensions = [entry.event for entry in entries], len(journal.binding.feature_names)
     after = statistics_after(journal.events(), new, journal.statistics(), dimensions)
-    journal.append_and_checkpoint(entries, after)
+    journal.append(entries, after)
 
 
 def statistics_after(

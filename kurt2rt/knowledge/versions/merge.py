@@ -17,7 +17,7 @@ from kurt2rt.core.rla.lesson_history import DERIVED, LessonRecord
 from kurt2rt.core.rla.rla import Origin
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.knowledge.journal.binding import require_compatible
-from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
+from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import fold_entries, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.versions.editing import append_with_values
@@ -85,7 +85,7 @@ class _Merger:
         new_rlas = sum(isinstance(entry.event, RlaCreated) for entry in self.entries)
         return MergeResult(self._merge_id, len(self.entries), new_rlas, tuple(self._left_out), self._stay_undone)
 
-    def bring(self, theirs: RlaSystem, entries: list[StoredEntry]) -> None:
+    def bring(self, theirs: RlaSystem, entries: list[JournalEntry]) -> None:
         """Take over the lessons that stand in `theirs`, the fold of `entries`."""
         keys = lesson_keys(self._here)
         known = {keys[record.event.origin.command_id]: record for record in self._here.history.records}
@@ -145,5 +145,5 @@ class _Merger:
         return replace(there, command_id=name)
 
 
-def _stamps(entries: list[StoredEntry]) -> Mapping[str, str]:
+def _stamps(entries: list[JournalEntry]) -> Mapping[str, str]:
     return {entry.event.origin.command_id: entry.stamped_at for entry in entries}

@@ -20,7 +20,7 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.knowledge.exchange.archive import MANIFEST, pack, unpack
 from kurt2rt.knowledge.exchange.package import ImportResult, export_knowledge, import_knowledge, read_package
-from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
+from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.event_codec import encode_event
 from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal
@@ -279,10 +279,10 @@ def test_export_knowledge_while_written_is_of_one_moment(
         before = look.read_all()
     with open_knowledge(path, ROBOT, TASK) as robot:
 
-        def taught_meanwhile(journal: Journal) -> Iterator[StoredEntry]:
+        def taught_meanwhile(journal: Journal) -> Iterator[JournalEntry]:
             yield from iter_entries(journal)
             praise = RlaRewarded(1, 1, 390, origin("praise"), (Credit(1, 0.1),))
-            robot.append_and_checkpoint([JournalEntry(praise, STAMP)], Statistics({1: 6}))
+            robot.append([JournalEntry(praise, STAMP)], Statistics({1: 6}))
 
         iter_entries = Journal.iter_entries
         monkeypatch.setattr(Journal, "iter_entries", taught_meanwhile)

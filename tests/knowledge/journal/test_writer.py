@@ -65,9 +65,9 @@ class HangingJournal(Journal):
 
     let_go: threading.Event
 
-    def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
+    def append(self, entries: Sequence[JournalEntry], statistics: Statistics | None = None) -> list[Receipt]:
         self.let_go.wait()
-        return super().append(entries)
+        return super().append(entries, statistics)
 
 
 def test_error_hanging_write_is_told_until_it_ends(path: Path) -> None:
