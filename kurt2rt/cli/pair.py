@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 import typer
 from rich.console import Console
 from rich.text import Text
 
 from kurt2rt.channel.security import pairing
-from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, Pairing, list_pairings
+from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, Pairing, PairingFolders, list_pairings
 from kurt2rt.cli.json_output import plain, print_json
 from kurt2rt.cli.options import PageAddressName, SettingsName
 from kurt2rt.cli.qr_code import print_code
@@ -67,7 +67,7 @@ def pair(
         kurt2rt pair anna-phone --revoke
     """
     service = load_service(settings)
-    pairings = _Folders(Path(service.teachers), Path(service.devices))
+    pairings = PairingFolders(Path(service.teachers), Path(service.devices))
     if list_ + renew + revoke > 1:
         raise typer.BadParameter("one of these at a time", param_hint="--list, --renew, --revoke")
     if as_json and not list_:
@@ -86,14 +86,7 @@ def pair(
         _show(name, changed, addresses)
 
 
-class _Folders(NamedTuple):
-    """Folders of both sides of all pairings."""
-
-    teachers: Path
-    devices: Path
-
-
-def _list(pairings: _Folders, *, as_json: bool) -> None:
+def _list(pairings: PairingFolders, *, as_json: bool) -> None:
     if as_json:
         rows = list_pairings(pairings.teachers)
         print_json({"paired": [{**plain(row), "device": _where(row.name, pairings.devices)} for row in rows]})

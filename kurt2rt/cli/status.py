@@ -98,11 +98,8 @@ def as_rich(report: HealthReport) -> Group:
     for link in report.pages:
         table.add_row(Text("page", style="bold"), Text(link))
     told = [Text(f"! {trouble_in(each)}", style=_STYLES[URGENT if each.urgent else WARNS]) for each in report.troubles]
-    return Group(Text(headline(report), style=_style_of(report)), table, *told)
-
-
-def _style_of(report: HealthReport) -> str:
-    return _STYLES[URGENT] if report.urgent else _STYLES[WARNS] if report.troubles else "green"
+    style = _STYLES[URGENT] if report.urgent else _STYLES[WARNS] if report.troubles else "green"
+    return Group(Text(headline(report), style=style), table, *told)
 
 
 def _line(report: HealthReport) -> str:

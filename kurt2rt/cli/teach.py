@@ -138,7 +138,8 @@ def teach(options: _Options) -> None:
     device = _device(service, options.device or (TERMINAL if options.terminal else AUTO if options.auto else LOCAL))
     route = _Route(device, options.robot or device.host, options.port or device.port)
     if options.terminal:
-        _teach(route, partial(_by_typing, route), while_stdin=False)
+        place = f"{route.host}:{route.port}"
+        _teach(route, lambda robot, say: TerminalTeacher(robot, sys.stdin, say, place).teach(), while_stdin=False)
     elif options.auto:
         _teach(route, partial(_by_script, route, service, options), while_stdin=options.while_stdin)
     else:
@@ -198,10 +199,6 @@ def _teach(route: _Route, teacher: Callable[[TeacherClient, _Print], Awaitable[N
             tasks.cancel_scope.cancel()
 
     anyio.run(run)
-
-
-async def _by_typing(route: _Route, client: TeacherClient, print_line: _Print) -> None:
-    await TerminalTeacher(client, sys.stdin, print_line, f"{route.host}:{route.port}").teach()
 
 
 async def _by_script(

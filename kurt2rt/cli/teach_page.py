@@ -9,14 +9,14 @@ from pathlib import Path
 import anyio
 from rich.console import Console
 
-from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, Device, local_pairing
+from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, Device, PairingFolders, local_pairing
 from kurt2rt.cli.live_screen import PAIR_A_PHONE
 from kurt2rt.cli.qr_code import print_code
 from kurt2rt.cli.teach_shutdown import until_ended, until_teaching_ends
 from kurt2rt.service.settings import ServiceSettings
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.device_pages import PageSite
-from kurt2rt.teacher.page.device_server import FindDevices, Pairings, local_devices, run_device_pages
+from kurt2rt.teacher.page.device_server import FindDevices, local_devices, run_device_pages
 from kurt2rt.teacher.page.host_names import own_names
 from kurt2rt.teacher.page.own_addresses import AUTO
 from kurt2rt.teacher.page.public_address import PageError
@@ -91,7 +91,7 @@ def serve_pages(service: ServiceSettings, port: int, options: PageOptions) -> No
         PageError: no TCP port is free.
         CredentialsError: the folder of pairings cannot be read or written.
     """
-    pairings = Pairings(Path(service.teachers), Path(service.devices))
+    pairings = PairingFolders(Path(service.teachers), Path(service.devices))
     local_pairing(pairings.teachers, pairings.devices, port=service.port)
     site = PageSite(
         lambda device: TeacherClient(device.folder, ROBOT_HERE, port),

@@ -142,7 +142,7 @@ class ChildProcesses:
         if code is None or child.trouble or (code == 0 and not child.restarts):
             return
         child.reader.join(_LAST_LINES_S)
-        ended = f"{child.name} ended ({_cause(code)})"
+        ended = f"{child.name} ended ({f'signal {-code}' if code < 0 else f'exit code {code}'})"
         if not child.restarts:
             child.trouble = f"{ended}; start it again by hand"
         else:
@@ -188,7 +188,3 @@ def _read(process: "subprocess.Popen[bytes]", hear: Callable[[str], None]) -> th
     thread = threading.Thread(target=read, name="child's lines", daemon=True)
     thread.start()
     return thread
-
-
-def _cause(code: int) -> str:
-    return f"signal {-code}" if code < 0 else f"exit code {code}"

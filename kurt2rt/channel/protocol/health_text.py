@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from kurt2rt.channel.protocol.health import HealthReport, SensorAges, TickLateness, Trouble
+from kurt2rt.channel.protocol.health import HealthReport, SensorAges, Trouble
 from kurt2rt.core.progress_meter import WINDOW_S, Progress
 
 FINE, WARNS, URGENT = "", "warns", "urgent"
@@ -21,6 +21,7 @@ class HealthRow(NamedTuple):
 def rows_of(report: HealthReport) -> tuple[HealthRow, ...]:
     """Return one row (name, text, level) per subject of the report, in the order of the screens."""
     late, bus = report.punctuality, report.bus
+    lately = f", {late.missed_lately} of them in the last minute" if late.missed_lately else ""
     rows = [
         ("does", report.doing),
         (
@@ -28,7 +29,7 @@ def rows_of(report: HealthReport) -> tuple[HealthRow, ...]:
             f"now {late.newest_ms:.2f} ms; in a minute: median {late.median_ms:.2f}, p99 {late.p99_ms:.2f}, "
             f"worst {late.worst_ms:.2f} ms",
         ),
-        ("ticks", f"{late.ticks:,} done, in {late.took_p99_ms:.2f} ms each (p99), {late.missed} missed{_lately(late)}"),
+        ("ticks", f"{late.ticks:,} done, in {late.took_p99_ms:.2f} ms each (p99), {late.missed} missed{lately}"),
         ("sensors", _ages(report.ages)),
     ]
     if bus is not None:
@@ -138,10 +139,6 @@ def size(count: int) -> str:
         if count >= bytes_each:
             return f"{count / bytes_each:.{1 if unit == 'GB' else 0}f} {unit}"
     return f"{count / 1000:.0f} kB"
-
-
-def _lately(late: TickLateness) -> str:
-    return f", {late.missed_lately} of them in the last minute" if late.missed_lately else ""
 
 
 def _ages(ages: SensorAges) -> str:

@@ -16,7 +16,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from kurt2rt.channel.security.context_folder import PAIRED_AT, SECRET, SEQUENCE, SETTINGS, UNKNOWN, CredentialsError
 from kurt2rt.core.rla.rla import AUTO, CRITIC
@@ -47,6 +47,13 @@ _SECRET_BYTES = 16
 _SALT_BYTES = 8
 _ID_BYTES = 3
 _TOKEN_BYTES = 24  # 32 characters
+
+
+class PairingFolders(NamedTuple):
+    """Folders that hold the robot's sides (`teachers`) and the devices' sides (`devices`) of all pairings."""
+
+    teachers: Path
+    devices: Path
 
 
 @dataclass(frozen=True, slots=True)

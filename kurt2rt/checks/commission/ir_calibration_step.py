@@ -4,7 +4,7 @@ import statistics
 
 from hal.kurt2_settings import Kurt2SensorSettings
 from kurt2rt.checks.commission.fault import FaultCode, SkipCode, SkippedError
-from kurt2rt.checks.commission.ir_calibration import IrCalibrationError, IrFit, IrLaw, IrReading, fit_law
+from kurt2rt.checks.commission.ir_calibration import IrCalibrationError, IrFit, IrReading, fit_law
 from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.progress import Findings, LawFound
 from kurt2rt.checks.commission.sensors import SETTLE_S
@@ -46,7 +46,8 @@ class IrCalibrationStep:
             result.fail(FaultCode.CHANNEL_UNHEARD)
             return result
         floor = statistics.median([each for each in floors if each is not None])
-        readings = await _read_all(stand, chosen, findings)
+        asked = [await _read(stand, each, distance_m, findings) for each in chosen for distance_m in DISTANCES_M]
+        readings = [each for each in asked if each is not None]
         try:
             fit = fit_law(readings)
         except IrCalibrationError as error:
@@ -61,7 +62,8 @@ class IrCalibrationStep:
             result.note(row)
         result.note(f"nothing in view: {floor:.0f} counts")
         near_m = min(each.distance_m for each in readings)
-        far_m = _detection_limit_m(law, floor, max(each.distance_m for each in readings))
+        # The law falls to the empty reading there, if not beyond the farthest board.
+        far_m = round(min(max(each.distance_m for each in readings), law.distance_m(floor)), 2)
         if far_m < _LEAST_FAR_M:
             result.fail(FaultCode.ROOM_NOT_CLEAR, distance_m=far_m)
             return result
@@ -77,11 +79,6 @@ class IrCalibrationStep:
         )
         result.findings = findings.model_copy(update={"law": law_found})
         return result
-
-
-async def _read_all(stand: TestStand, sensors: tuple[Kurt2SensorSettings, ...], findings: Findings) -> list[IrReading]:
-    readings = [await _read(stand, sensor, distance_m, findings) for sensor in sensors for distance_m in DISTANCES_M]
-    return [each for each in readings if each is not None]
 
 
 async def _choose(stand: TestStand, findings: Findings) -> tuple[Kurt2SensorSettings, ...]:
@@ -131,11 +128,6 @@ def _rows(readings: list[IrReading], fit: IrFit) -> list[str]:
         f"off by {off:+.0f}" + (", left out" if at in fit.outliers else "")
         for at, (reading, off) in enumerate(zip(readings, fit.residuals, strict=True))
     ]
-
-
-def _detection_limit_m(law: IrLaw, floor: float, farthest_m: float) -> float:
-    """Return the distance at which the calibration falls to the empty reading, at most the farthest measured."""
-    return round(min(farthest_m, law.distance_m(floor)), 2)
 
 
 def _channel(sensor: Kurt2SensorSettings, findings: Findings) -> str:

@@ -40,7 +40,8 @@ def check_can_interfaces(net: Path = NET_FOLDER) -> tuple[CheckResult, ...]:
 
     `net`: folder of the kernel's interfaces.
     """
-    interfaces = [each for each in _can_interfaces(net) if not _is_virtual(each)]
+    of_can = (each for each in sorted(net.glob("*")) if read_attribute(each / "type") == str(_ARPHRD_CAN))
+    interfaces = [each for each in of_can if not _is_virtual(each)]
     if not interfaces:
         values = {"folder": str(net), "up": _up_command("can0")}
         return (CheckResult(FindingCode.CAN_INTERFACE_NONE, CheckStatus.MISSING, values),)
@@ -49,24 +50,16 @@ def check_can_interfaces(net: Path = NET_FOLDER) -> tuple[CheckResult, ...]:
 
 def _check_interface(interface: Path) -> CheckResult:
     values = {"name": interface.name, "up": _up_command(interface.name)}
-    if not _is_up(interface):
+    if not int(read_attribute(interface / "flags") or "0", 16) & _IFF_UP:
         return CheckResult(FindingCode.CAN_INTERFACE_DOWN, CheckStatus.WARNING, values)
     if read_attribute(interface / "carrier") == "0":
         return CheckResult(FindingCode.CAN_INTERFACE_OFF_BUS, CheckStatus.WARNING, values)
     return CheckResult(FindingCode.CAN_INTERFACE, CheckStatus.OK, values)
 
 
-def _can_interfaces(net: Path) -> list[Path]:
-    return [each for each in sorted(net.glob("*")) if read_attribute(each / "type") == str(_ARPHRD_CAN)]
-
-
 def _is_virtual(interface: Path) -> bool:
     # Behind slcan there is a serial line, which sysfs shows as no device.
     return not (interface / "device").exists() and not interface.name.startswith("slcan")
-
-
-def _is_up(interface: Path) -> bool:
-    return bool(int(read_attribute(interface / "flags") or "0", 16) & _IFF_UP)
 
 
 def _up_command(name: str) -> str:

@@ -58,16 +58,11 @@ def format_guard(facts: DecisionFacts) -> str:
 
 def format_teaching(rla: RlaFacts) -> str:
     """Return the teacher, time and content of the lesson that gave the RLA its action."""
-    acts = standing_lessons(rla)
+    acts = [act for act in rla.acts if act.changes]
     if not acts:
         return f"Nothing is known of who taught {rla.title}."
     newest = acts[-1]
     return f"{newest.text}; {format_stamp(newest)}, by {newest.teacher} in phase {newest.phase}."
-
-
-def standing_lessons(rla: RlaFacts) -> tuple[LessonFact, ...]:
-    """Return the lessons that made the RLA's present action, oldest first, without rewards."""
-    return tuple(act for act in rla.acts if act.changes)
 
 
 def format_usage(rla: RlaFacts) -> str:

@@ -1,15 +1,13 @@
 """Server of the pages of this machine and of all paired devices, which follows changes of the pairings."""
 
 from collections.abc import Awaitable, Callable, Collection
-from dataclasses import dataclass
 from itertools import chain
-from pathlib import Path
 
 import anyio
 import anyio.to_thread
 
 from kurt2rt.channel.security.context_folder import CredentialsError
-from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, Device, pairing_names, read_device
+from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, Device, PairingFolders, pairing_names, read_device
 from kurt2rt.teacher.page.device_pages import DevicePages, PageSite
 from kurt2rt.teacher.page.own_addresses import NO_ADDRESS
 from kurt2rt.teacher.page.public_address import PageError
@@ -22,15 +20,7 @@ FindDevices = Callable[[], tuple[tuple[Device, ...], str]]
 """Returns devices, and the faults of others in a line (or empty). Raises CredentialsError."""
 
 
-@dataclass(frozen=True, slots=True)
-class Pairings:
-    """Folders that hold the robot's sides (`teachers`) and the devices' sides (`devices`) of all pairings."""
-
-    teachers: Path
-    devices: Path
-
-
-def local_devices(pairings: Pairings) -> tuple[tuple[Device, ...], str]:
+def local_devices(pairings: PairingFolders) -> tuple[tuple[Device, ...], str]:
     """Return the devices whose pages this machine can serve, and the faults of others in a line (or empty).
 
     This machine's own comes first, then those that were paired and whose folder was not moved away, the newest first.

@@ -17,9 +17,9 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from kurt2rt.channel.security.context_folder import CredentialsError
-from kurt2rt.channel.security.pairing import LOCAL, TERMINAL, Device, local_pairing, pair, renew, revoke
+from kurt2rt.channel.security.pairing import LOCAL, TERMINAL, Device, PairingFolders, local_pairing, pair, renew, revoke
 from kurt2rt.teacher.page.device_pages import DevicePages, PageSite
-from kurt2rt.teacher.page.device_server import Pairings, local_devices, run_device_pages
+from kurt2rt.teacher.page.device_server import local_devices, run_device_pages
 from kurt2rt.teacher.page.served_pages import ServedPages
 from tests.patience import PATIENCE_S
 from tests.teacher.page.fake_robot import FakeRobot
@@ -59,7 +59,7 @@ class Links:
 
 @dataclass
 class Server:
-    pairings: Pairings
+    pairings: PairingFolders
     links: Links
     told: list[ServedPages]
 
@@ -84,7 +84,7 @@ class Server:
 
 @asynccontextmanager
 async def server(folder: Path) -> AsyncIterator[Server]:
-    pairings, links, end = Pairings(folder / "teachers", folder / "devices"), Links(), anyio.Event()
+    pairings, links, end = PairingFolders(folder / "teachers", folder / "devices"), Links(), anyio.Event()
     told: list[ServedPages] = []
     serve = partial(run_device_pages, poll_s=0.02)
     local_pairing(pairings.teachers, pairings.devices)
@@ -275,7 +275,7 @@ async def test_this_machines_own_page_is_not_served_to_the_network(tmp_path: Pat
 
 
 def test_local_devices_lists_own_then_newest_present_ones(tmp_path: Path) -> None:
-    pairings = Pairings(tmp_path / "teachers", tmp_path / "devices")
+    pairings = PairingFolders(tmp_path / "teachers", tmp_path / "devices")
     for name in (LOCAL, TERMINAL):
         local_pairing(pairings.teachers, pairings.devices, name)
     for name in ("old-phone", "tablet", "phone", "broken"):
