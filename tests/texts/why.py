@@ -11,7 +11,6 @@ from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.facts import ContactFacts, DecisionFacts, DoubtFacts, LessonFact, LevelFacts
 from kurt2rt.runs.explain.reasons import format_reasons, headline
 from kurt2rt.runs.explain.sentences import (
-    format_guard,
     format_held,
     format_mid_level,
     format_runner_up,
@@ -135,7 +134,7 @@ def sentences() -> Iterator[tuple[str, str]]:
         ("alarm", replace(limited, latched=True)),
         ("touches", OF_CAUSE[DecisionCause.TOUCHES]),
     ):
-        yield f"guard, {label}", format_guard(of)
+        yield f"guard, {label}", " | ".join(format_reasons(of)[1:])
     above = replace(level((0.0,), replace(PLACE, distance=1.0)), level=MID, words=("left", "straight", ""))
     commands = replace(with_mid(facts(KNOWN), above), plan_says="on the way to door")
     for label, of in (

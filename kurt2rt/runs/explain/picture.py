@@ -21,7 +21,6 @@ from kurt2rt.runs.explain.save_figure import save_figure
 from kurt2rt.runs.explain.sensor_view import LEGEND, SensorView, draw_sensor_view
 from kurt2rt.runs.explain.sentences import (
     format_counterfactuals,
-    format_guard,
     format_mid_level,
     format_rla,
     format_teaching,
@@ -85,7 +84,6 @@ def _heading(
         *format_reasons(facts),
         *([f"It would have been otherwise with {changes[0]}."] if changes else []),
         *format_mid_level(facts)[:1],
-        *([format_guard(facts)] if format_guard(facts) else []),
     ]
     text = "\n".join(fill(line, 178) for line in lines)
     figure.text(0.02, 0.886, text, fontsize=10.5, color=INK, va="top", linespacing=1.4)

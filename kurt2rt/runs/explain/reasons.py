@@ -60,7 +60,7 @@ def _standing_by(cause: DecisionCause, facts: DecisionFacts, stop: ActiveStop | 
 
 
 def format_reasons(facts: DecisionFacts) -> list[str]:
-    """Return the reasons for the behaviour, the main one first."""
+    """Return the reasons for the behaviour, the main one first, and what the guard made of it."""
     lines = []
     if facts.latched:
         lines.append(
@@ -81,7 +81,7 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
     else:
         lines.append(_sentence(facts))
         lines += _autonomous_action(facts)
-    return [*lines, *_slow_lesson(facts), *_broken_sensors(facts)]
+    return [*lines, *_slow_lesson(facts), *_broken_sensors(facts), *_guard(facts)]
 
 
 def _slow_lesson(facts: DecisionFacts) -> list[str]:
@@ -96,6 +96,13 @@ def _broken_sensors(facts: DecisionFacts) -> list[str]:
         f"The range sensor {title} is broken: the readings of the sensors next to it count in its place."
         for title in facts.broken_sensors
     ]
+
+
+def _guard(facts: DecisionFacts) -> list[str]:
+    if not facts.reasons or facts.latched or facts.cause == DecisionCause.TOUCHES:  # said already
+        return []
+    granted, decided = (f"{left:+.2f}/{right:+.2f} m/s" for left, right in (facts.granted, facts.decided))
+    return [f"The guard let {granted} through instead of {decided}: {', '.join(facts.reasons)}."]
 
 
 def _sentence(facts: DecisionFacts) -> str:

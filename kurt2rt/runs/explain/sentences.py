@@ -46,16 +46,6 @@ def format_held(facts: DecisionFacts) -> str:
     )
 
 
-def format_guard(facts: DecisionFacts) -> str:
-    """Return the sentence on the guard's change of the decision; empty if it was applied unchanged."""
-    if not facts.reasons or facts.latched or facts.cause == DecisionCause.TOUCHES:  # said already
-        return ""
-    return (
-        f"The guard let {_speeds(facts.granted)} through instead of {_speeds(facts.decided)}: "
-        f"{', '.join(facts.reasons)}."
-    )
-
-
 def format_teaching(rla: RlaFacts) -> str:
     """Return the teacher, time and content of the lesson that gave the RLA its action."""
     acts = [act for act in rla.acts if act.changes]
@@ -154,8 +144,3 @@ def _then(tip: SensorCounterfactual) -> str:
     if tip.action != tip.rla.action:
         return f"{format_rla(tip.rla)}, once {tip.action} had driven for its minimum time"
     return format_rla(tip.rla)
-
-
-def _speeds(speeds: tuple[float, float]) -> str:
-    left_m_s, right_m_s = speeds
-    return f"{left_m_s:+.2f}/{right_m_s:+.2f} m/s"

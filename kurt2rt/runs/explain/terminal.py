@@ -14,7 +14,6 @@ from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
 from kurt2rt.runs.explain.reasons import format_reasons, headline
 from kurt2rt.runs.explain.sentences import (
     format_counterfactuals,
-    format_guard,
     format_held,
     format_mid_level,
     format_runner_up,
@@ -38,8 +37,6 @@ def render_why(
     """
     parts: list[RenderableType] = [Text.assemble((where, "dim")), Text(headline(facts), style="bold")]
     parts += [printable(line) for line in format_reasons(facts)]
-    if format_guard(facts):
-        parts.append(printable(format_guard(facts)))
     parts += _of_level(*facts.deciding, words)
     changes = format_counterfactuals(found)
     if changes:

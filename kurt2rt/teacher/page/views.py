@@ -21,7 +21,6 @@ from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
 from kurt2rt.runs.explain.reasons import format_reasons
 from kurt2rt.runs.explain.reasons import headline as decision_headline
 from kurt2rt.runs.explain.sentences import (
-    format_guard,
     format_mid_level,
     format_runner_up,
     format_teaching,
@@ -41,14 +40,14 @@ def why_view(number: int, facts: DecisionFacts | None, words: SensorWords = NO_W
     if facts is None:
         return {**view, "lines": [], "features": []}
     level, rla = facts.deciding
-    lines = [*format_reasons(facts), format_guard(facts)]
+    lines = format_reasons(facts)
     if rla is not None:
         lines += [*format_runner_up(level), format_teaching(rla), format_usage(rla)]
     return {
         **view,
         "text": decision_headline(facts),
         "tick": facts.tick,
-        "lines": [line for line in (*lines, *format_mid_level(facts)) if line],
+        "lines": [*lines, *format_mid_level(facts)],
         "rla": "" if rla is None else rla.title,
         "features": [] if rla is None else _features(level, rla, words),
     }
