@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 from foxglove import Context
 
@@ -18,9 +18,9 @@ from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_files import RunFiles
 from kurt2rt.runs.recording.run_folder import Budget
 from kurt2rt.runs.recording.run_head import RecordedRun
-from kurt2rt.runs.recording.topics import Topics
+from kurt2rt.runs.recording.topics import HealthNote, Note, QuestionNote, TickNote, Topics
 from kurt2rt.runs.recording.writer_thread import WriterThread
-from simbridge.contracts.simulation import SimulatedPlace, WorldPlan, WorldView
+from simbridge.contracts.simulation import WorldView
 
 CAPACITY = 3000
 """Most notes that wait for the disk: half a minute of ticks, about 20 MB."""
@@ -28,60 +28,6 @@ _ROUNDS_PER_SECOND = 10
 _PLACE_EVERY_TICKS = 5
 _WORLD_EVERY_TICKS = 100
 _NS_PER_S = 1_000_000_000
-
-
-class TickNote(NamedTuple):
-    """Record of a tick that waits for the recorder's thread, with the truth on a simulated robot."""
-
-    record: TickRecord
-    time_ns: int
-    """Time since 1970."""
-    saved: bool
-    """True if statistics were saved after the tick."""
-    truth: SimulatedPlace | None
-    world: WorldPlan | None
-
-
-class QuestionNote(NamedTuple):
-    """Question of the robot that waits for the recorder's thread; its text is `str(question)`."""
-
-    question: object
-
-
-class HealthNote(NamedTuple):
-    """Health report that waits for the recorder's thread, in plain values."""
-
-    report: Mapping[str, Any]
-
-
-Note = TickNote | QuestionNote | HealthNote | Acknowledgement
-
-
-class NoteLog:
-    """Logger of a recorder's notes to one destination, a file or the live view, at the newest tick's time."""
-
-    def __init__(self, topics: Topics, began_ns: int) -> None:
-        """`began_ns`: time since 1970 of notes before the first tick."""
-        self.topics = topics
-        self._time_ns = began_ns
-        self._world: WorldPlan | None = None
-
-    def log(self, note: Note) -> None:
-        """Log one note to its topic. Raises RecordingError or KnowledgeError for a note that cannot be encoded."""
-        topics = self.topics
-        match note:
-            case TickNote(record, time_ns, saved, truth, world):
-                self._time_ns = time_ns
-                topics.tick(record, saved=saved, truth=truth, time_ns=time_ns)
-                self._world = world or self._world
-                if self._world is not None:
-                    topics.log_world(self._world, record.tick, time_ns)
-            case QuestionNote(question):
-                topics.on_question(str(question), self._time_ns)
-            case HealthNote(report):
-                topics.on_health(report, self._time_ns)
-            case Acknowledgement():
-                topics.on_acknowledged(note, self._time_ns)
 
 
 class RunRecorder:
@@ -94,9 +40,9 @@ class RunRecorder:
     def __init__(
         self,
         files: RunFiles | None,
-        file_log: NoteLog | None,
+        file_log: Topics | None,
         live: LiveView | None,
-        live_log: NoteLog | None,
+        live_log: Topics | None,
         *,
         world: WorldView | None = None,
         began_at_ns: int | None = None,
@@ -215,7 +161,7 @@ class RunRecorder:
     def _note(self, note: Note) -> None:
         self._thread.submit(note, held=len(self._held))
 
-    def _log(self, log: NoteLog, note: Note) -> bool:
+    def _log(self, log: Topics, note: Note) -> bool:
         """Log a note; return whether it succeeded."""
         try:
             log.log(note)
@@ -244,7 +190,7 @@ class RunRecorder:
             self._not_written += self.written
             self.written = 0
         if files.is_open and (not took or files.given_up > given_up):
-            self._file_log.topics.repeat_periodic()
+            self._file_log.repeat_periodic()
 
     def _run(self) -> None:
         rounds = rounds_of_files = 0
@@ -306,11 +252,11 @@ def open_run_recorder(
     if recordings is not None:
         context = Context()
         # Before the files, so that each of them knows all topics.
-        file_log = NoteLog(Topics(context, run.settings, run.features), run.now_ns())
+        file_log = Topics(context, run.settings, run.features, run.now_ns())
         files = RunFiles(context, recordings, run, budget, disk)
     if live is not None:
         # A context of its own: notes that wait for the disk are shown now, and logged to the file later.
         context = Context()
-        live_log = NoteLog(Topics(context, run.settings, run.features), run.now_ns())
+        live_log = Topics(context, run.settings, run.features, run.now_ns())
         view = LiveView(context, *live, name=run.name, opened=opened)
     return RunRecorder(files, file_log, view, live_log, world=run.world, began_at_ns=run.began_at_ns, capacity=capacity)

@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from foxglove import Channel, Context
 from foxglove import channel as sdk_channel
@@ -20,7 +20,6 @@ from hal.guard_reason import GuardReason
 from hal.odometry import PlanePose, WheelOdometry
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.outcome_text import text_of
-from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla_system import knowledge_hash_of
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.event_codec import encode_event
@@ -49,6 +48,33 @@ SCANS_HZ, SCENES_HZ = 20, 10
 _GROUND_EVERY_S = 5
 
 
+class TickNote(NamedTuple):
+    """Record of a tick that waits for the recorder's thread, with the truth on a simulated robot."""
+
+    record: TickRecord
+    time_ns: int
+    """Time since 1970."""
+    saved: bool
+    """True if statistics were saved after the tick."""
+    truth: SimulatedPlace | None
+    world: WorldPlan | None
+
+
+class QuestionNote(NamedTuple):
+    """Question of the robot that waits for the recorder's thread; its text is `str(question)`."""
+
+    question: object
+
+
+class HealthNote(NamedTuple):
+    """Health report that waits for the recorder's thread, in plain values."""
+
+    report: Mapping[str, Any]
+
+
+Note = TickNote | QuestionNote | HealthNote | Acknowledgement
+
+
 _NUMBER, _COUNT, _TEXT = {"type": "number"}, {"type": "integer"}, {"type": "string"}
 _EVENT = {
     "type": "object",
@@ -66,11 +92,13 @@ def _schema(title: str, properties: Mapping[str, Any]) -> dict[str, Any]:
 
 
 class Topics:
-    """Logger of a run to the topics of a context, for a file or a live view. Times in ns since 1970."""
+    """Logger of a run's notes to the topics of a context, for a file or a live view, at the newest tick's time."""
 
-    def __init__(self, context: Context, settings: RobotSettings, features: tuple[str, ...]) -> None:
-        """`features`: names of the situation's values."""
+    def __init__(self, context: Context, settings: RobotSettings, features: tuple[str, ...], began_ns: int) -> None:
+        """`features`: names of the situation's values. `began_ns`: time since 1970 of notes before the first tick."""
         self._features = features
+        self._time_ns = began_ns
+        self._world: WorldPlan | None = None
         self._pictures = RobotScene(settings)
         self._odometry = WheelOdometry(settings.geometry)
         self._reckoned = PlanePose()
@@ -95,12 +123,29 @@ class Topics:
         self._ground = SceneUpdateChannel(GROUND, context=context)
         self._log = LogChannel(LOG, context=context)
 
-    def tick(self, record: TickRecord, *, saved: bool, truth: SimulatedPlace | None, time_ns: int) -> None:
-        """Log one tick to its topics.
+    def log(self, note: Note) -> None:
+        """Log one note to its topics. Raises RecordingError or KnowledgeError for a note that cannot be encoded."""
+        match note:
+            case TickNote():
+                self._time_ns = note.time_ns
+                self._log_tick(note)
+                self._world = note.world or self._world
+                if self._world is not None and note.record.tick >= self._next_ground:
+                    self._next_ground = note.record.tick + self._ground_ticks
+                    self._ground.log(world_scene(self._world, self._time_ns), log_time=self._time_ns)
+            case QuestionNote(question):
+                self._log_text(str(question), LogLevel.Warning)
+            case HealthNote(report):
+                self._health.log(_json(report), log_time=self._time_ns)
+            case Acknowledgement():
+                self._log_acknowledgement(note)
 
-        `truth`: true place of a simulated robot; None for a real one. Raises RecordingError or KnowledgeError for a
-        tick that cannot be encoded.
-        """
+    def repeat_periodic(self) -> None:
+        """Repeat the periodic messages at the next tick, for a new receiver."""
+        self._next_scan = self._next_scene = self._next_ground = 0
+
+    def _log_tick(self, note: TickNote) -> None:
+        record = note.record
         readings = record.readings
         motion = self._odometry.motion(readings.encoder_left_ticks, readings.encoder_right_ticks)
         pose = self._reckoned.moved(motion.forward_m, motion.turn_rad)
@@ -109,102 +154,87 @@ class Topics:
             knowledge = None
             if record.knowledge is not None:
                 knowledge = knowledge_hash_of(yield_gil(sorted(record.knowledge, key=lambda rla: rla.rla_id)))
-            self._tick.log(encode_tick(tick_entry(record, saved=saved, knowledge=knowledge)), log_time=time_ns)
+            self._tick.log(
+                encode_tick(tick_entry(record, saved=note.saved, knowledge=knowledge)), log_time=self._time_ns
+            )
         for event in record.events:
-            self._log_event(event, time_ns)
-        self._log_changes(record, time_ns)
-        if truth is not None:
-            self._log_truth(truth, time_ns)
+            self._lesson.log(b'{"event":%s}' % encode_event(event).encode(), log_time=self._time_ns)
+        self._log_changes(record)
+        if note.truth is not None:
+            self._log_truth(note.truth)
         if record.tick >= self._next_scan:
             self._next_scan = record.tick + self._scan_ticks
-            self._log_pose(record, time_ns)
+            self._log_pose(record)
         if record.tick >= self._next_scene or record.question_begins:
             self._next_scene = record.tick + self._scene_ticks
-            self._log_scene(record, time_ns)
+            self._log_scene(record)
 
-    def on_acknowledged(self, acknowledgement: Acknowledgement, time_ns: int) -> None:
-        """Log that a lesson is durable or failed."""
+    def _log_acknowledgement(self, acknowledgement: Acknowledgement) -> None:
         content = {
             "acknowledged": acknowledgement.command_id,
             "sequence": acknowledgement.sequence,
             "error": acknowledgement.error,
             "stamped_at": acknowledgement.stamped_at,
         }
-        self._lesson.log(_json({key: value for key, value in content.items() if value is not None}), log_time=time_ns)
+        self._lesson.log(
+            _json({key: value for key, value in content.items() if value is not None}), log_time=self._time_ns
+        )
         if acknowledgement.error is not None:
-            self.log_text(f"not saved: {acknowledgement.command_id}: {acknowledgement.error}", LogLevel.Error, time_ns)
+            self._log_text(f"not saved: {acknowledgement.command_id}: {acknowledgement.error}", LogLevel.Error)
 
-    def on_question(self, question: str, time_ns: int) -> None:
-        """Log a question of the robot."""
-        self.log_text(question, LogLevel.Warning, time_ns)
+    def _log_text(self, text: str, level: LogLevel) -> None:
+        self._log.log(
+            Log(timestamp=timestamp(self._time_ns), level=level, message=text, name="kurt2rt"), log_time=self._time_ns
+        )
 
-    def on_health(self, report: Mapping[str, Any], time_ns: int) -> None:
-        """Log a health report in plain values."""
-        self._health.log(_json(report), log_time=time_ns)
-
-    def log_world(self, world: WorldPlan, tick: int, time_ns: int) -> None:
-        """Log the simulated world if 5 s have passed since the last time; call it on every tick."""
-        if tick >= self._next_ground:
-            self._next_ground = tick + self._ground_ticks
-            self._ground.log(world_scene(world, time_ns), log_time=time_ns)
-
-    def repeat_periodic(self) -> None:
-        """Repeat the periodic messages at the next tick, for a new receiver."""
-        self._next_scan = self._next_scene = self._next_ground = 0
-
-    def log_text(self, text: str, level: LogLevel, time_ns: int) -> None:
-        """Log a line of text with its level to the topic of texts."""
-        self._log.log(Log(timestamp=timestamp(time_ns), level=level, message=text, name="kurt2rt"), log_time=time_ns)
-
-    def _log_event(self, event: TeachingEvent, time_ns: int) -> None:
-        self._lesson.log(b'{"event":%s}' % encode_event(event).encode(), log_time=time_ns)
-
-    def _log_changes(self, record: TickRecord, time_ns: int) -> None:
+    def _log_changes(self, record: TickRecord) -> None:
         """Log results, and changes of activity, guard reasons and trouble."""
         for result in record.results:
             level = LogLevel.Info if result.accepted else LogLevel.Warning
-            self.log_text(f"{result.command_id}: {text_of(result.outcome)}", level, time_ns)
+            self._log_text(f"{result.command_id}: {text_of(result.outcome)}", level)
         doing = describe_decision(record.decision, record.behaviour)
         if doing != self._doing:
             self._doing = doing
-            self.log_text(doing, LogLevel.Debug, time_ns)
+            self._log_text(doing, LogLevel.Debug)
         if record.guard_result.reasons != self._reasons:
             self._reasons = record.guard_result.reasons
             if self._reasons:
                 # Each turn begins at the slew limit: nothing that anybody needs to be warned of.
                 gently = LogLevel.Debug if all(reason.routine for reason in self._reasons) else LogLevel.Warning
                 level = LogLevel.Error if record.guard_result.latched else gently
-                self.log_text(f"guard: {', '.join(self._reasons)}", level, time_ns)
+                self._log_text(f"guard: {', '.join(self._reasons)}", level)
         if record.saving_error != self._saving_error:
             self._saving_error = record.saving_error
-            self.log_text(self._saving_error or "lessons are saved again", LogLevel.Error, time_ns)
+            self._log_text(self._saving_error or "lessons are saved again", LogLevel.Error)
 
-    def _log_pose(self, record: TickRecord, time_ns: int) -> None:
+    def _log_pose(self, record: TickRecord) -> None:
         if self._scan.has_sinks():
-            self._scan.log(self._pictures.scan(record.readings.infrared_counts, time_ns), log_time=time_ns)
+            self._scan.log(self._pictures.scan(record.readings.infrared_counts, self._time_ns), log_time=self._time_ns)
         pose = self._reckoned
-        self._pose.log(pose_in(START, pose, time_ns), log_time=time_ns)
+        self._pose.log(pose_in(START, pose, self._time_ns), log_time=self._time_ns)
         moves = [(START, ROBOT, pose)]
         if self._begins is not None:
             # Reckoned and true place drift apart from the same beginning. The root comes first: a viewer takes the
             # first parent that it hears of for the ground.
             moves.insert(0, (WORLD, START, self._begins))
         # One message holds the whole tree: after a seek a viewer has but the last one of each topic.
-        self._tf.log(transforms(moves, time_ns), log_time=time_ns)
+        self._tf.log(transforms(moves, self._time_ns), log_time=self._time_ns)
 
-    def _log_truth(self, truth: SimulatedPlace, time_ns: int) -> None:
+    def _log_truth(self, truth: SimulatedPlace) -> None:
         here = PlanePose(truth.x_m, truth.y_m, truth.heading_rad)
         if self._begins is None:
             self._begins = here
-        self._truth.log(pose_in(WORLD, here, time_ns), log_time=time_ns)
+        self._truth.log(pose_in(WORLD, here, self._time_ns), log_time=self._time_ns)
 
-    def _log_scene(self, record: TickRecord, time_ns: int) -> None:
+    def _log_scene(self, record: TickRecord) -> None:
         if self._situation.has_sinks():
             values: list[float] = record.situation.vector.tolist()
-            self._situation.log(_json(dict(zip(self._features, values, strict=True))), log_time=time_ns)
+            self._situation.log(_json(dict(zip(self._features, values, strict=True))), log_time=self._time_ns)
         if self._scene.has_sinks():
-            scene = self._pictures.scene(record.readings.infrared_counts, record.decision, record.behaviour, time_ns)
-            self._scene.log(scene, log_time=time_ns)
+            scene = self._pictures.scene(
+                record.readings.infrared_counts, record.decision, record.behaviour, self._time_ns
+            )
+            self._scene.log(scene, log_time=self._time_ns)
 
 
 def _channel(topic: str, schema: dict[str, Any], context: Context) -> Channel:
