@@ -6,7 +6,7 @@ from collections import OrderedDict
 from collections.abc import Awaitable, Callable, Coroutine, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 from config.errors import UserError
 from kurt2rt.channel.protocol.limits import MOST_UPLOAD_BYTES, PART_BYTES
@@ -38,6 +38,8 @@ from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runtime import Runtime
 from simbridge.contracts.world_refusal import WorldRefusal, WorldRefusedError
+
+Part = TypeVar("Part")
 
 
 class PendingCommands:
@@ -173,6 +175,14 @@ class Upload:
         return content
 
 
+class _RefusedError(Exception):
+    """Request that is not carried out, with its reply."""
+
+    def __init__(self, reply: Reply) -> None:
+        super().__init__(reply)
+        self.reply = reply
+
+
 class OffTickRequests:
     """Handler of requests that no tick carries out, such as copies and the next run.
 
@@ -198,64 +208,61 @@ class OffTickRequests:
 
     async def answer(self, device: str, request: Request) -> Reply:
         """Return the reply to a request that is no command; NOT_HERE for a request that is not handled here."""
-        match request:
-            case WorldRequest():
-                return self._world()
-            case SimulationRequest():
-                return await self._simulation_view()
-            case ExamStatusRequest():
-                if self._parts.exam is None:
-                    return not_simulated()
-                return Reply(ReplyStatus.DONE, {"exam": EXAM.plain_of(self._parts.exam())})
-            case UploadRequest():
-                return self._add_part(device, request)
-            case FileRequest(name=name, offset=offset):
-                return await self._file_part(name, offset)
-        return Reply(ReplyStatus.NOT_HERE)
+        try:
+            match request:
+                case WorldRequest():
+                    return self._world()
+                case SimulationRequest():
+                    return await self._simulation_view()
+                case ExamStatusRequest():
+                    exam = _simulated(self._parts.exam)
+                    return Reply(ReplyStatus.DONE, {"exam": EXAM.plain_of(exam())})
+                case UploadRequest():
+                    return self._add_part(device, request)
+                case FileRequest(name=name, offset=offset):
+                    return await self._file_part(name, offset)
+            return Reply(ReplyStatus.NOT_HERE)
+        except (_RefusedError, CommandRefusedError) as error:
+            return self._reply_to(error)
 
     def begin(self, device: str, command_id: str, request: OffTickCommand) -> Reply | None:
         """Carry out a command, or begin it; return a refusal, or None.
 
         After None its reply is, or will be, in the pending commands.
         """
-        match request:
-            case SpeedRequest(times=times):
-                return self._change_speed(device, command_id, times)
-            case NextRunRequest() | LoadRequest():
-                return self._begin_next_run(device, command_id, request)
-            case ExamRequest():
-                return self._begin_exam(device, command_id)
-            case SaveRequest() | ExportRequest():
-                held = self._held_by_another(device)
-                if held is None:
+        try:
+            match request:
+                case SpeedRequest(times=times):
+                    self._change_speed(device, command_id, times)
+                case NextRunRequest() | LoadRequest():
+                    self._begin_next_run(device, command_id, request)
+                case ExamRequest():
+                    self._begin_exam(device, command_id)
+                case SaveRequest() | ExportRequest():
+                    self._refuse_others(device)
                     self._begin(command_id, self._copy(command_id, self._copying(request)))
-                return held
-            case MoveWallRequest() | PlaceRequest() | BackToStartRequest():
-                reply = self._change_world(device, request)
-                self._pending.begin(command_id).set_result(reply)
-                return None
+                case MoveWallRequest() | PlaceRequest() | BackToStartRequest():
+                    reply = self._change_world(device, request)
+                    self._pending.begin(command_id).set_result(reply)
+        except (_RefusedError, CommandRefusedError) as error:
+            return self._reply_to(error)
+        return None
 
     async def _simulation_view(self) -> Reply:
         parts = self._parts
-        if parts.run_control is None:
-            return not_simulated()
-        view = await parts.run_control.view()
+        view = await _simulated(parts.run_control).view()
         if parts.speed is not None:
             view = replace(view, speed=parts.speed.wanted, reached=parts.speed.reached)
         if parts.progress is not None:
             view = replace(view, progress=parts.progress.progress, unit=parts.progress.unit)
         return Reply(ReplyStatus.DONE, {"simulation": SIMULATION.plain_of(view)})
 
-    def _begin_exam(self, device: str, command_id: str) -> Reply | None:
-        if self._parts.exam is None:
-            return not_simulated()
-        refused = self._not_in_charge(device)
-        if refused is not None:
-            return refused
-        if self._parts.exam().running:
-            return self._refused(Outcome(RefusalCode.EXAM_UNDER_WAY))
+    def _begin_exam(self, device: str, command_id: str) -> None:
+        exam = _simulated(self._parts.exam)
+        self._refuse_unless_teacher(device)
+        if exam().running:
+            raise CommandRefusedError(RefusalCode.EXAM_UNDER_WAY)
         self._begin(command_id, self._examine(command_id))
-        return None
 
     async def _examine(self, command_id: str) -> None:
         try:
@@ -267,52 +274,34 @@ class OffTickRequests:
             self._pending.settle(command_id, done(self._tick(), Outcome(ResultCode.EXAM_BEGUN)))
 
     def _add_part(self, device: str, request: UploadRequest) -> Reply:
-        if self._parts.run_control is None:
-            return not_simulated()
+        _simulated(self._parts.run_control)
         if request.boot != self._parts.boot:
             return restarted(self._tick())
-        refused = self._not_in_charge(device)
-        if refused is not None:
-            return refused
-        try:
-            size = self._upload.add(device, request.upload, request.offset, request.part)
-        except CommandRefusedError as error:
-            return self._refused(error.outcome)
-        return done(self._tick(), size=size)
+        self._refuse_unless_teacher(device)
+        return done(self._tick(), size=self._upload.add(device, request.upload, request.offset, request.part))
 
-    def _change_speed(self, device: str, command_id: str, times: int) -> Reply | None:
-        if self._parts.run_control is None or self._parts.speed is None:
-            return not_simulated()
-        refused = self._not_in_charge(device)
-        if refused is None:
-            self._parts.speed.set(times)
-            self._runtime.inbox.put(SpeedChanged(times))
-            reply = done(self._tick(), Outcome.of(ResultCode.SPEED_SET, times=times))
-            self._pending.begin(command_id).set_result(reply)
-        return refused
+    def _change_speed(self, device: str, command_id: str, times: int) -> None:
+        _simulated(self._parts.run_control)
+        speed = _simulated(self._parts.speed)
+        self._refuse_unless_teacher(device)
+        speed.set(times)
+        self._runtime.inbox.put(SpeedChanged(times))
+        reply = done(self._tick(), Outcome.of(ResultCode.SPEED_SET, times=times))
+        self._pending.begin(command_id).set_result(reply)
 
-    def _begin_next_run(self, device: str, command_id: str, request: NextRunRequest | LoadRequest) -> Reply | None:
-        control = self._parts.run_control
-        if control is None:
-            return not_simulated()
-        refused = self._not_in_charge(device)
-        if refused is not None:
-            return refused
+    def _begin_next_run(self, device: str, command_id: str, request: NextRunRequest | LoadRequest) -> None:
+        control = _simulated(self._parts.run_control)
+        self._refuse_unless_teacher(device)
         if self._changing_run:
-            return self._refused(Outcome(RefusalCode.NEXT_RUN_UNDER_WAY))
+            raise CommandRefusedError(RefusalCode.NEXT_RUN_UNDER_WAY)
         commands = self._runtime.handler
         teacher = TeacherNow(device, int(commands.phase), commands.clock.session)
         if isinstance(request, LoadRequest):
-            try:
-                content = self._upload.pop(device, request.upload, request.sha256)
-            except CommandRefusedError as error:
-                return self._refused(error.outcome)
-            prepare = partial(control.load, content, teacher)
+            prepare = partial(control.load, self._upload.pop(device, request.upload, request.sha256), teacher)
         else:
             prepare = partial(control.prepare, request.world, request.task, request.fresh, teacher)
         self._changing_run = True
         self._begin(command_id, self._change_run(command_id, prepare))
-        return None
 
     async def _change_run(self, command_id: str, prepare: Callable[[], Awaitable[Outcome]]) -> None:
         try:
@@ -331,15 +320,20 @@ class OffTickRequests:
     def _refused(self, outcome: Outcome) -> Reply:
         return refusal("refused", outcome, self._tick())
 
-    def _held_by_another(self, device: str) -> Reply | None:
-        held = self._runtime.handler.authority.refusal_for(device)
-        return None if held is None else refusal("held", held, self._tick())
+    def _reply_to(self, error: _RefusedError | CommandRefusedError) -> Reply:
+        return error.reply if isinstance(error, _RefusedError) else self._refused(error.outcome)
 
-    def _not_in_charge(self, device: str) -> Reply | None:
-        """Return the refusal for a device that is not the robot's teacher."""
+    def _refuse_others(self, device: str) -> None:
+        """Refuse a device while another teaches."""
+        held = self._runtime.handler.authority.refusal_for(device)
+        if held is not None:
+            raise _RefusedError(refusal("held", held, self._tick()))
+
+    def _refuse_unless_teacher(self, device: str) -> None:
+        """Refuse a device that is not the robot's teacher."""
         if self._runtime.handler.authority.teacher is None:
-            return refusal("held", Outcome(RefusalCode.NO_TEACHER), self._tick())
-        return self._held_by_another(device)
+            raise _RefusedError(refusal("held", Outcome(RefusalCode.NO_TEACHER), self._tick()))
+        self._refuse_others(device)
 
     def _begin(self, command_id: str, work: Coroutine[Any, Any, None]) -> None:
         """Begin a command whose work waits for threads; `close` cancels it."""
@@ -375,12 +369,8 @@ class OffTickRequests:
             self._pending.settle(command_id, reply)
 
     def _change_world(self, device: str, request: MoveWallRequest | PlaceRequest | BackToStartRequest) -> Reply:
-        world = self._parts.world
-        if world is None:
-            return not_simulated()
-        held = self._held_by_another(device)
-        if held is not None:
-            return held
+        world = _simulated(self._parts.world)
+        self._refuse_others(device)
         try:
             if isinstance(request, MoveWallRequest):
                 world.move_wall(request.name, request.dx_m, request.dy_m)
@@ -399,8 +389,13 @@ class OffTickRequests:
         return done(self._tick(), Outcome(ResultCode.ROBOT_PLACED))
 
     def _world(self) -> Reply:
-        if self._parts.world is None:
-            return not_simulated()
-        view = self._parts.world.world()
+        view = _simulated(self._parts.world).world()
         told = WorldView(view.version, view.name, view.size_m, view.outline, view.walls, view.posts)
         return Reply(ReplyStatus.DONE, WORLD.plain_of(told))
+
+
+def _simulated(part: Part | None) -> Part:
+    """Return a part that only simulated robots have, or refuse the request."""
+    if part is None:
+        raise _RefusedError(not_simulated())
+    return part
