@@ -37,7 +37,7 @@ from kurt2rt.checks.commission.robot_file import write_robot_file
 from kurt2rt.checks.commission.step import CommissionStep
 from kurt2rt.checks.commission.test_stand import TestStand
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.options import RobotName
+from kurt2rt.cli.options import RobotName, refuse_if
 from kurt2rt.platform.durable_files import write_durably
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.service.shutdown import SHUTDOWN_SIGNALS
@@ -131,11 +131,9 @@ def _session(options: _Options) -> "_Session":
 
 def _target(name: str) -> Path:
     """Return the settings file to write. Raises typer.BadParameter."""
-    if not re.fullmatch(r"[a-z0-9][a-z0-9-]{0,39}", name):
-        raise typer.BadParameter("up to 40 of a-z, 0-9 and -", param_hint="--name")
+    refuse_if(not re.fullmatch(r"[a-z0-9][a-z0-9-]{0,39}", name), "up to 40 of a-z, 0-9 and -", "--name")
     target = Path("var", "robots", f"{name}.yaml")
-    if target.exists():
-        raise typer.BadParameter(f"{target} is there already; give another name, or move it", param_hint="--name")
+    refuse_if(target.exists(), f"{target} is there already; give another name, or move it", "--name")
     return target
 
 

@@ -1,5 +1,6 @@
-"""Options that several commands share."""
+"""Options that several commands share, and the refusal of options that cannot be taken."""
 
+import math
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -12,6 +13,17 @@ from config.plugins import installed_plugins
 
 _NAME_OR_PATH = "NAME|PATH"
 _MOST_SEEDS = 100_000
+
+
+def refuse_if(refused: bool, text: str, options: str) -> None:
+    """Raise typer.BadParameter with a text on `options`, such as --set, if they cannot be taken."""
+    if refused:
+        raise typer.BadParameter(text, param_hint=options)
+
+
+def require_finite(seconds: float | None) -> None:
+    """Raise typer.BadParameter if --seconds is infinite or NaN."""
+    refuse_if(seconds is not None and not math.isfinite(seconds), "must be a finite number of seconds", "--seconds")
 
 
 def _names_in(kind: str) -> Callable[[str], list[str]]:
@@ -166,8 +178,9 @@ def changes_of(words: list[str] | None) -> dict[str, str]:
     changes = {}
     for word in words or ():
         key, equals, value = word.partition("=")
-        if not (key and equals and value):
-            raise typer.BadParameter(f"give KEY=VALUE, such as learning.radius=600 (got {word!r})", param_hint="--set")
+        refuse_if(
+            not (key and equals and value), f"give KEY=VALUE, such as learning.radius=600 (got {word!r})", "--set"
+        )
         changes[key] = value
     return changes
 
@@ -189,8 +202,7 @@ def parse_seeds(text: str) -> list[int]:
         raise typer.BadParameter(
             f"too many seeds (got {text!r}, allowed are {_MOST_SEEDS} at most)", param_hint="--seeds"
         )
-    if len(set(seeds)) != len(seeds):
-        raise typer.BadParameter(f"no seed may appear twice (got {text!r})", param_hint="--seeds")
+    refuse_if(len(set(seeds)) != len(seeds), f"no seed may appear twice (got {text!r})", "--seeds")
     return seeds
 
 

@@ -11,7 +11,7 @@ from rich.text import Text
 from kurt2rt.channel.security import pairing
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, Pairing, PairingFolders, list_pairings
 from kurt2rt.cli.json_output import plain, print_json
-from kurt2rt.cli.options import PageAddressName, SettingsName
+from kurt2rt.cli.options import PageAddressName, SettingsName, refuse_if
 from kurt2rt.cli.qr_code import print_code
 from kurt2rt.cli.tables import console_of
 from kurt2rt.platform.text_table import TextTable, print_whole
@@ -68,10 +68,8 @@ def pair(
     """
     service = load_service(settings)
     pairings = PairingFolders(Path(service.teachers), Path(service.devices))
-    if list_ + renew + revoke > 1:
-        raise typer.BadParameter("one of these at a time", param_hint="--list, --renew, --revoke")
-    if as_json and not list_:
-        raise typer.BadParameter("only a list is printed as JSON; give --list, too", param_hint="--json")
+    refuse_if(list_ + renew + revoke > 1, "one of these at a time", "--list, --renew, --revoke")
+    refuse_if(as_json and not list_, "only a list is printed as JSON; give --list, too", "--json")
     if list_:
         _list(pairings, as_json=as_json)
     elif name is None:

@@ -1,6 +1,5 @@
 """`kurt2rt run`. The robot's packages are imported by the command, not by its help."""
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -9,7 +8,16 @@ import typer
 
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.interrupt import end_at_interrupt
-from kurt2rt.cli.options import DEFAULT_TEACHER, PageAddressName, RobotName, SettingsName, task_option, world_option
+from kurt2rt.cli.options import (
+    DEFAULT_TEACHER,
+    PageAddressName,
+    RobotName,
+    SettingsName,
+    refuse_if,
+    require_finite,
+    task_option,
+    world_option,
+)
 from kurt2rt.platform.extras import extra_for
 from kurt2rt.service.bus_names import SIMULATED
 
@@ -209,36 +217,28 @@ def _load_recorder(options: _Options) -> bool:
 def _require_consistent(options: _Options) -> None:
     """Raise typer.BadParameter for options that exclude each other."""
     simulated = options.bus == SIMULATED
-    for refused, text, hint in (
-        (
-            options.seconds is not None and not math.isfinite(options.seconds),
-            "must be a finite number of seconds",
-            "--seconds",
-        ),
-        (options.auto and not simulated, "a scripted teacher teaches the simulated robot only", "--auto"),
-        (
-            (options.page or options.phone or options.auto) and options.teacher == _NO_TEACHER,
-            "a page and a scripted teacher come over the channel",
-            "--teacher",
-        ),
-        (
-            not options.auto and options.teacher not in (_CHANNEL, _NO_TEACHER),
-            f"{options.teacher!r} is neither {_CHANNEL} nor {_NO_TEACHER}; a scripted teacher by name needs --auto",
-            "--teacher",
-        ),
-        (
-            options.no_record and options.record is not None,
-            "either a folder to record to, or nothing is recorded",
-            "--no-record",
-        ),
-        (
-            options.service and (options.auto or options.teacher == _NO_TEACHER),
-            "after each start it waits for a person who says Go",
-            "--service",
-        ),
-    ):
-        if refused:
-            raise typer.BadParameter(text, param_hint=hint)
+    require_finite(options.seconds)
+    refuse_if(options.auto and not simulated, "a scripted teacher teaches the simulated robot only", "--auto")
+    refuse_if(
+        (options.page or options.phone or options.auto) and options.teacher == _NO_TEACHER,
+        "a page and a scripted teacher come over the channel",
+        "--teacher",
+    )
+    refuse_if(
+        not options.auto and options.teacher not in (_CHANNEL, _NO_TEACHER),
+        f"{options.teacher!r} is neither {_CHANNEL} nor {_NO_TEACHER}; a scripted teacher by name needs --auto",
+        "--teacher",
+    )
+    refuse_if(
+        options.no_record and options.record is not None,
+        "either a folder to record to, or nothing is recorded",
+        "--no-record",
+    )
+    refuse_if(
+        options.service and (options.auto or options.teacher == _NO_TEACHER),
+        "after each start it waits for a person who says Go",
+        "--service",
+    )
 
 
 def _program(options: _Options, *, recorded: bool) -> "RobotProgram":

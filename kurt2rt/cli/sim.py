@@ -14,7 +14,7 @@ from rich.console import Console
 from config.settings import SettingsError
 from hal.robot_settings import RobotSettings, load_robot_of
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.options import RobotName, world_option
+from kurt2rt.cli.options import RobotName, refuse_if, require_finite, world_option
 from kurt2rt.platform.signal_handlers import SignalHandlers
 from kurt2rt.platform.switch_interval import short_switch_interval
 from kurt2rt.service.console_thread import ConsoleThread
@@ -77,10 +77,8 @@ def sim(options: _Options) -> None:
     it is simulated. If the bus goes down, the robot stands, and goes on when the
     bus is back. Ctrl-C, or SIGTERM, switches it off.
     """
-    if options.seconds is not None and not math.isfinite(options.seconds):
-        raise typer.BadParameter("must be a finite number of seconds", param_hint="--seconds")
-    if options.bus.startswith("virtual:"):
-        raise typer.BadParameter("a virtual bus reaches no other program; give shared:NAME", param_hint="--bus")
+    require_finite(options.seconds)
+    refuse_if(options.bus.startswith("virtual:"), "a virtual bus reaches no other program; give shared:NAME", "--bus")
     settings = load_robot_of(options.robot, options.world)
     _simulate(options, settings)
 

@@ -23,6 +23,7 @@ from kurt2rt.cli.options import (
     RobotPort,
     SettingsName,
     Teacher,
+    refuse_if,
     task_option,
 )
 from kurt2rt.cli.scripted_file import people_agree
@@ -85,8 +86,7 @@ class _Options:
 
     def check(self) -> None:
         """Raise typer.BadParameter if options contradict each other."""
-        if self.terminal and self.auto:
-            raise typer.BadParameter("one teacher at a time: --terminal or --auto", param_hint="--auto")
+        refuse_if(self.terminal and self.auto, "one teacher at a time: --terminal or --auto", "--auto")
         others = (self.terminal, self.auto, self.device, self.robot, self.public_address)
         if self.phone and any(each not in (False, None) for each in others):
             raise typer.BadParameter(

@@ -16,7 +16,7 @@ from hal.robot_settings import RobotSettings, load_robot
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, ONLOOKER, local_pairing, read_device
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.options import RecordedRun, RobotAddress, RobotPort, RunsFolder, SettingsName
+from kurt2rt.cli.options import RecordedRun, RobotAddress, RobotPort, RunsFolder, SettingsName, refuse_if
 from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.why_live import ask_why
 from kurt2rt.core.perception.sensor_words import words_for
@@ -78,31 +78,15 @@ class _Options:
         of_a_part = bool(self.from_s) or self.to_s is not None
         of_a_robot = any(each is not None for each in (self.device, self.robot, self.port))
         picture = self.picture
-        for refused, text, hint in (
-            (
-                picture is not None and picture.suffix not in _FORMATS,
-                f"{'' if picture is None else picture.name}: give a file that ends with {', '.join(_FORMATS)}",
-                "--picture",
-            ),
-            (
-                self.at is not None and of_a_part,
-                "give a moment, or a part of the run with --from and --to",
-                "--at",
-            ),
-            (self.to_s is not None and self.to_s <= self.from_s, f"is not after --from {self.from_s:g}", "--to"),
-            (
-                self.live and (of_a_run or of_a_part),
-                "is of now; leave out run, --at, --from and --to",
-                "--live",
-            ),
-            (
-                of_a_robot and not self.live,
-                "are for a robot that runs; give --live",
-                "--device, --robot, --port",
-            ),
-        ):
-            if refused:
-                raise typer.BadParameter(text, param_hint=hint)
+        if picture is not None:
+            formats = ", ".join(_FORMATS)
+            refuse_if(
+                picture.suffix not in _FORMATS, f"{picture.name}: give a file that ends with {formats}", "--picture"
+            )
+        refuse_if(self.at is not None and of_a_part, "give a moment, or a part of the run with --from and --to", "--at")
+        refuse_if(self.to_s is not None and self.to_s <= self.from_s, f"is not after --from {self.from_s:g}", "--to")
+        refuse_if(self.live and (of_a_run or of_a_part), "is of now; leave out run, --at, --from and --to", "--live")
+        refuse_if(of_a_robot and not self.live, "are for a robot that runs; give --live", "--device, --robot, --port")
 
 
 @takes_options(_Options)

@@ -8,7 +8,7 @@ import typer
 from hal.robot_settings import load_robot_of
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
-from kurt2rt.cli.options import RobotName, TaskOfTheFile, task_option
+from kurt2rt.cli.options import RobotName, TaskOfTheFile, refuse_if, task_option
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.exchange.package import export_knowledge, import_knowledge, read_package
@@ -105,8 +105,7 @@ def graph(
     from kurt2rt.knowledge.graph.graph import FORMATS, drop_rare_edges, read_network
     from kurt2rt.knowledge.graph.picture import write_network
 
-    if out.suffix not in FORMATS:
-        raise typer.BadParameter(f"{out.name}: give a file that ends with {', '.join(FORMATS)}", param_hint="--out")
+    refuse_if(out.suffix not in FORMATS, f"{out.name}: give a file that ends with {', '.join(FORMATS)}", "--out")
     with Journal.read_only(file) as journal:
         whole = read_network(journal, level=level, behaviour=behaviour)
     shown = drop_rare_edges(whole, at_least)
