@@ -195,28 +195,18 @@ class Checklist:
 
 def open_steps(progress: Progress) -> list[CommissionStep]:
     """Return the steps without an outcome, except the block under the wheels."""
-    return [step for step in STEPS if step is not _OFF_GROUND and step.name not in progress.steps]
+    return [step for step in STEPS if step is not _OFF_GROUND and progress.outcome_of(step.name) is None]
 
 
 def steps_to_run(progress: Progress) -> list[CommissionStep]:
     """Return the steps that have not passed, which a session runs by default."""
-    steps = progress.steps
-    return [
-        step
-        for step in STEPS
-        if step is not _OFF_GROUND and (step.name not in steps or steps[step.name].outcome is not StepOutcome.PASSED)
-    ]
+    passed = StepOutcome.PASSED
+    return [step for step in STEPS if step is not _OFF_GROUND and progress.outcome_of(step.name) is not passed]
 
 
 def blocking_failures(progress: Progress) -> list[CommissionStep]:
     """Return the failed steps that forbid driving this robot."""
-    return [
-        step
-        for step in STEPS
-        if step.blocks_driving
-        and step.name in progress.steps
-        and progress.steps[step.name].outcome is StepOutcome.FAILED
-    ]
+    return [step for step in STEPS if step.blocks_driving and progress.outcome_of(step.name) is StepOutcome.FAILED]
 
 
 def step_named(name: str) -> CommissionStep:

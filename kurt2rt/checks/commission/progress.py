@@ -84,6 +84,11 @@ class Progress(Settings):
     steps: Mapping[str, StepRecord] = Field(default={})
     """Records by step name."""
 
+    def outcome_of(self, name: str) -> StepOutcome | None:
+        """Return the outcome of a step's last run; None if it was not taken."""
+        record = self.steps.get(name)
+        return None if record is None else record.outcome
+
     def with_step(self, name: str, record: StepRecord, findings: Findings) -> Self:
         """Return a copy of the progress with the record of the step `name`, and with all findings so far."""
         return self.model_copy(update={"steps": {**self.steps, name: record}, "findings": findings})

@@ -12,17 +12,14 @@ from kurt2rt.platform.text_table import TextTable, print_whole
 _STYLES = {StepOutcome.PASSED: "green", StepOutcome.FAILED: "bold red", StepOutcome.SKIPPED: "yellow"}
 
 
-def passed(progress: Progress, steps: Sequence[CommissionStep]) -> bool:
-    """Return whether every step of a commissioning passed, so that the robot is ready."""
-    return all(
-        step.name in progress.steps and progress.steps[step.name].outcome is StepOutcome.PASSED for step in steps
-    )
+def _verdict(progress: Progress, steps: Sequence[CommissionStep]) -> str:
+    passed = all(progress.outcome_of(step.name) is StepOutcome.PASSED for step in steps)
+    return "PASSED" if passed else "not passed"
 
 
 def as_text(progress: Progress, steps: Sequence[CommissionStep]) -> str:
     """Return the full record of each step as text."""
-    verdict = "PASSED" if passed(progress, steps) else "not passed"
-    lines = [f"{progress.name} on {progress.bus}, begun with {progress.base}: {verdict}"]
+    lines = [f"{progress.name} on {progress.bus}, begun with {progress.base}: {_verdict(progress, steps)}"]
     for step in steps:
         record = progress.steps.get(step.name)
         lines += ["", f"{step.title}  [{step.name}]"]
@@ -50,5 +47,4 @@ def print_report(progress: Progress, steps: Sequence[CommissionStep], console: C
     print_whole(console, table, "")
     for each in to_do:
         console.print(Text(each), soft_wrap=not console.is_terminal)
-    verdict = "PASSED" if passed(progress, steps) else "not passed"
-    console.print(Text(f"{progress.name}: {verdict}", style="bold"), soft_wrap=True)
+    console.print(Text(f"{progress.name}: {_verdict(progress, steps)}", style="bold"), soft_wrap=True)
