@@ -123,11 +123,11 @@ class Diagnostics:
         return tuple(sorted(troubles, key=lambda each: (not each.urgent, -each.since_s)))
 
     def _of_readings(self, snapshot: Snapshot) -> Iterator[_Found]:
-        guard = self._settings.guard
+        guard, readings = self._settings.guard, snapshot.readings
         for name, age_s, stale_s in (
-            ("range sensors", snapshot.infrared_age_s, guard.stale_infrared_s),
-            ("encoders", snapshot.encoder_age_s, guard.stale_encoder_s),
-            ("bumpers", snapshot.bumper_age_s, guard.stale_bumper_s),
+            ("range sensors", readings.infrared_age_s, guard.stale_infrared_s),
+            ("encoders", readings.encoder_age_s, guard.stale_encoder_s),
+            ("bumpers", readings.bumper_age_s, guard.stale_bumper_s),
         ):
             if math.isinf(age_s):
                 yield _Found(TroubleCode.SENSORS_UNHEARD, True, name)

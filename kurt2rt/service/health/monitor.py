@@ -129,7 +129,7 @@ class HealthMonitor:
         self._counted.update(_counters(snapshot))
         punctuality = self._punctuality(snapshot)
         disks, machine = self._disks.spaces(), self._machine.poll()
-        last_write_s = snapshot.last_write_s
+        last_write_s, readings = snapshot.last_write_s, snapshot.readings
         return HealthReport(
             version=self._version,
             boot=self._boot,
@@ -144,7 +144,7 @@ class HealthMonitor:
             lessons=snapshot.lessons,
             punctuality=punctuality,
             ages=SensorAges(
-                _finite(snapshot.infrared_age_s), _finite(snapshot.encoder_age_s), _finite(snapshot.bumper_age_s)
+                _finite(readings.infrared_age_s), _finite(readings.encoder_age_s), _finite(readings.bumper_age_s)
             ),
             bus=None if snapshot.bus is None else _bus_health(snapshot.bus),
             disks=disks,

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hal.health import Health
+from hal.robot import SensorReadings
 from hal.sensor_watch import BrokenSensor
 from kurt2rt.core.decision.standing import short_text
 from kurt2rt.core.progress_meter import NO_PROGRESS, Progress
@@ -21,10 +22,7 @@ class Snapshot:
     tick: int
     now_s: float
     """Time of the clock that dates troubles, in s."""
-    infrared_age_s: float
-    encoder_age_s: float
-    bumper_age_s: float
-    """Infinite before the first frame, as in SensorReadings."""
+    readings: SensorReadings
     bus: Health | None
     unwritten: int
     saving_error: str | None
@@ -53,15 +51,13 @@ def take_snapshot(
         instruments: parts outside the runtime.
         now_s: present time of the monotonic clock, in s.
     """
-    readings, system, ledger = record.readings, runtime.level.system, runtime.timer
+    system, ledger = runtime.level.system, runtime.timer
     errors = {part: error() for part, error in instruments.errors.items()}
     errors["teaching"] = runtime.handler.updater.error
     return Snapshot(
         tick=record.tick,
         now_s=now_s,
-        infrared_age_s=readings.infrared_age_s,
-        encoder_age_s=readings.encoder_age_s,
-        bumper_age_s=readings.bumper_age_s,
+        readings=record.readings,
         bus=None if instruments.bus is None else instruments.bus(),
         unwritten=keeping.unwritten,
         saving_error=keeping.saving_error,

@@ -9,6 +9,7 @@ from hal.bus_state import ControllerState
 from hal.guard_reason import GuardReason
 from hal.health import Health
 from hal.kurt2_settings import load_kurt2
+from hal.robot import readings_before_the_first
 from hal.sensor_signs import SensorFault
 from hal.sensor_watch import BrokenSensor
 from kurt2rt.channel.protocol.health import DiskSpace, Trouble
@@ -21,9 +22,7 @@ A_BUS = Health(1000, 0, 0, 0, 0, 0, "", ControllerState.ACTIVE, "", "", None)
 CALM = Snapshot(
     tick=100,
     now_s=50.0,
-    infrared_age_s=0.004,
-    encoder_age_s=0.004,
-    bumper_age_s=0.004,
+    readings=readings_before_the_first(10)._replace(infrared_age_s=0.004, encoder_age_s=0.004, bumper_age_s=0.004),
     bus=A_BUS,
     unwritten=0,
     saving_error=None,
@@ -36,6 +35,11 @@ CALM = Snapshot(
     lessons=0,
     doing="stands and asks",
 )
+
+
+def aged(**ages_s: float) -> Snapshot:
+    """Return the calm values with other ages of readings."""
+    return replace(CALM, readings=CALM.readings._replace(**ages_s))  # type: ignore[arg-type]
 
 
 class Ward:
@@ -76,14 +80,14 @@ def ward() -> Ward:
 
 
 def test_silent_sensors_are_urgent_and_it_is_known_for_how_long(ward: Ward) -> None:
-    first = ward.one(replace(CALM, infrared_age_s=0.6))
+    first = ward.one(aged(infrared_age_s=0.6))
     assert first == Trouble(TroubleCode.SENSORS_SILENT, 0.0, True, "range sensors", (0.6,))
-    later = ward.one(replace(CALM, infrared_age_s=1.6))
+    later = ward.one(aged(infrared_age_s=1.6))
     assert (later.numbers, later.since_s) == ((1.6,), 1.0)
     assert ward.look() == ()
-    unheard = ward.one(replace(CALM, bumper_age_s=math.inf))
+    unheard = ward.one(aged(bumper_age_s=math.inf))
     assert (unheard.code, unheard.name) == (TroubleCode.SENSORS_UNHEARD, "bumpers")
-    assert ward.one(replace(CALM, infrared_age_s=0.6)).since_s == 0.0  # another silence than the one before
+    assert ward.one(aged(infrared_age_s=0.6)).since_s == 0.0  # another silence than the one before
 
 
 def test_a_missed_tick_is_told_for_a_minute(ward: Ward) -> None:
@@ -150,7 +154,7 @@ def test_diagnostics_reports_drops_and_errors_of_parts(ward: Ward) -> None:
 def test_diagnostics_orders_by_urgency_then_duration(ward: Ward) -> None:
     ward.look(replace(CALM, errors={"channel": "a"}))
     ward.look(replace(CALM, errors={"channel": "a", "recording": "b"}))
-    troubles = ward.look(replace(CALM, encoder_age_s=1.0, errors={"recording": "b", "channel": "a"}))
+    troubles = ward.look(replace(aged(encoder_age_s=1.0), errors={"recording": "b", "channel": "a"}))
     assert [each.name for each in troubles] == ["encoders", "channel", "recording"]
 
 
