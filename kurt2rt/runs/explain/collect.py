@@ -1,9 +1,9 @@
 """Collection of a decision's facts from a runtime and the record of its newest tick."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import replace
-from itertools import takewhile
+from itertools import islice, takewhile
 from typing import NamedTuple
 
 import numpy as np
@@ -196,24 +196,12 @@ class _Reader:
         driver_id: int | None,
     ) -> LevelFacts:
         ranking = self._ranking(level_name, behaviour, situation.vector, driver_id)
-        distances: Mapping[int, float] = dict(ranking)
-        nearest = None if match is None else self._rla_facts(match.rla, match.radius, match.distance)
-        driver_rla = None if driver_id is None else self._system.get(driver_id)
-        driver = None
-        if driver_rla is not None:
-            driver = self._rla_facts(
-                driver_rla, self._radius_of(driver_rla), distances.get(driver_rla.rla_id, math.inf)
-            )
-        others: list[RlaFacts] = []
-        for rla_id, distance in ranking:
-            rla = self._system.get(rla_id)
-            if rla is None or (match is not None and rla_id == match.rla.rla_id):
-                continue
-            if self._passes_over(rla, level_name):
-                continue
-            if self._most is not None and len(others) >= self._most:
-                break
-            others.append(self._rla_facts(rla, self._radius_of(rla), distance))
+        ranked = [(rla, distance) for rla_id, distance in ranking if (rla := self._system.get(rla_id)) is not None]
+        match_id = None if match is None else match.rla.rla_id
+        nearer = takewhile(lambda each: each[0].rla_id != match_id, () if match is None else ranked)
+        passed_over = (self._rla_facts(*each) for each in nearer if self._passes_over(each[0], level_name))
+        others = (each for each in ranked if each[0].rla_id != match_id and not self._passes_over(each[0], level_name))
+        driver = None if driver_id is None else self._system.get(driver_id)
         return LevelFacts(
             level=level_name,
             behaviour=behaviour,
@@ -221,25 +209,17 @@ class _Reader:
             vector=tuple(situation.vector.tolist()),
             weights=tuple(situation.weights.tolist()),
             euclidean=situation.euclidean,
-            nearest=nearest,
-            driver=driver,
-            others=tuple(others),
+            nearest=None if match is None else self._rla_facts(match.rla, match.distance, match.radius),
+            driver=None if driver is None else self._rla_facts(driver, dict(ranking).get(driver.rla_id, math.inf)),
+            others=tuple(self._rla_facts(*each) for each in islice(others, self._most)),
             count=self._system.candidate_count(behaviour, level_name),
             radius_share=self._system.radius_share if level_name == BASIC else 1.0,
-            passed_over=None if match is None else self._passed_over(level_name, ranking, match),
+            passed_over=next(passed_over, None),
         )
 
     def _passes_over(self, rla: Rla, level_name: str) -> bool:
         """Return whether neighbours answer instead of an RLA, because no teacher can be asked."""
         return level_name == BASIC and self._runtime.level.skip_withdrawn and self._system.passes_over(rla)
-
-    def _passed_over(self, level_name: str, ranking: Sequence[tuple[int, float]], match: Match) -> RlaFacts | None:
-        """Return the nearest RLA of a ranking that is passed over, if it is nearer than the match; None without one."""
-        for rla_id, distance in takewhile(lambda each: each[0] != match.rla.rla_id, ranking):
-            rla = self._system.get(rla_id)
-            if rla is not None and self._passes_over(rla, level_name):
-                return self._rla_facts(rla, self._radius_of(rla), distance)
-        return None
 
     def _ranking(
         self, level_name: str, behaviour: str, vector: NDArray[np.float64], driver_id: int | None
@@ -262,7 +242,7 @@ class _Reader:
         mid = self._runtime.mid
         return self._system.radius if mid is None else mid.settings.learning.radius
 
-    def _rla_facts(self, rla: Rla, radius: float, distance: float) -> RlaFacts:
+    def _rla_facts(self, rla: Rla, distance: float, radius: float | None = None) -> RlaFacts:
         counted, appraisal = self._runtime.statistics, self._system.appraisal(rla.rla_id)
         rewarded = appraisal.rewards or appraisal.punishments
         return RlaFacts(
@@ -271,7 +251,7 @@ class _Reader:
             action=rla.action,
             condition=tuple(rla.condition),
             distance=distance,
-            radius=radius,
+            radius=self._radius_of(rla) if radius is None else radius,
             acts=tuple(self._lesson_fact(each) for each in self._system.history.about(rla.rla_id)),
             uses=counted.uses.get(rla.rla_id, 0),
             rewards=appraisal.rewards,

@@ -75,9 +75,8 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
     elif facts.cause == DecisionCause.TOUCHES:
         lines += _touches(facts)
     elif facts.cause == DecisionCause.UNKNOWN:
-        of_way = facts.asks_at == MID and facts.mid is not None
-        why = why_the_way(facts.mid) if of_way and facts.mid is not None else _why_ask(facts.basic)
-        lines.append(f"{_capital(why)}.")
+        of_way = facts.mid if facts.asks_at == MID else None
+        lines.append(f"{_capital(_why_ask(facts.basic) if of_way is None else why_the_way(of_way))}.")
     else:
         lines.append(_sentence(facts))
         lines += _autonomous_action(facts)
@@ -162,14 +161,18 @@ def _doubts(level: LevelFacts, doubt: DoubtFacts | None) -> list[str]:
         return ["The robot doubts its action, so it asks."]
     return [
         f"{format_rla(leader)} would drive, at {format_nearness(leader)}, but the robot doubts it and asks. "
-        f"Reason: {_why_doubt(doubt)}. Doubt {doubt.score:.1f}, it asks from {doubt.threshold:.1f}."
+        f"Reason: {_why_doubt(doubt)}. {_measure(doubt)}."
     ]
 
 
 def _doubts_a_little(doubt: DoubtFacts | None) -> list[str]:
     if doubt is None or doubt.score < _TOLD_DOUBT:
         return []
-    return [f"Doubt {doubt.score:.1f}, it asks from {doubt.threshold:.1f}: {_why_doubt(doubt)}."]
+    return [f"{_measure(doubt)}: {_why_doubt(doubt)}."]
+
+
+def _measure(doubt: DoubtFacts) -> str:
+    return f"Doubt {doubt.score:.1f}, it asks from {doubt.threshold:.1f}"
 
 
 def _why_doubt(doubt: DoubtFacts) -> str:
