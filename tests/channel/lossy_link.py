@@ -95,11 +95,6 @@ class LossyLink:
         return port
 
     @property
-    def clients(self) -> int:
-        """Number of different senders."""
-        return len(self._behind)
-
-    @property
     def up(self) -> Tally:
         """Tally of the datagrams to the robot."""
         return self._up.tally

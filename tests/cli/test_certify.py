@@ -26,20 +26,6 @@ def test_certificate_names_runs_that_exam_repeats(kurt2rt: CommandLine, lessons:
         assert worst["command"] in page
 
 
-def test_certificate_goes_on_with_what_is_missing(kurt2rt: CommandLine, lessons: Path) -> None:
-    whole = kurt2rt("study", "certify", lessons, *SHORT)
-    assert "Probability within 1 s of wall_following" in whole.out
-    assert "report  made/report.html" in whole.out
-    gone, *others = sorted(Path("made/results").glob("witnesses/runs-*.json"))
-    others += Path("made/results").glob("runs-*.json")
-    before = gone.read_bytes(), [path.stat().st_mtime_ns for path in others]
-    gone.unlink()
-    again = kurt2rt("study", "certify", lessons, *SHORT)
-    assert again.exit_code == 0, again.err
-    assert again.out == whole.out
-    assert (gone.read_bytes(), [path.stat().st_mtime_ns for path in others]) == before
-
-
 ALONE = ("--set", "learning.doubt.asks=true", "--set", "learning.doubt.alone=true")
 """Settings of a robot that a batch does not know."""
 

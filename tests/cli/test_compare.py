@@ -9,22 +9,12 @@ SHORT = (
     *("--set", "teaching.supervised_s=3", "--set", "teaching.corrections_s=2", "--set", "exam.duration_s=2"),
     *("--set", "exam.worlds=[a]", "--seeds", "3904", "--checkpoint", "1", "--jobs", "1", "--out", "made"),
 )
-NEVER = """
-class Never:
-    def __init__(self, setting):
-        self.setting = setting
+MINE = """
+import my_helper
+from kurt2rt.core.learner.rla_learner import RlaLearner
 
-    def decide(self, situation, *, taught):
-        return None
-
-    def lesson(self, situation, action, why):
-        pass
-
-    def snapshot(self):
-        return b""
-
-    def restore(self, data):
-        pass
+class Mine(RlaLearner):
+    pass
 """
 
 
@@ -46,11 +36,11 @@ def test_learners_are_taught_once_and_compared(kurt2rt: CommandLine) -> None:
 
 
 def test_changed_helper_of_a_learner_is_named_as_the_difference(kurt2rt: CommandLine) -> None:
-    Path("my_asking.py").write_text(f"import my_helper\n{NEVER}", encoding="utf-8")
+    Path("my_learner.py").write_text(MINE, encoding="utf-8")
     Path("my_helper.py").write_text("HERE = 1\n", encoding="utf-8")
-    words = ("study", "compare", "--learner", "my_asking:Never", *SHORT)
+    words = ("study", "compare", "--learner", "my_learner:Mine", *SHORT)
     assert kurt2rt(*words).exit_code == 0
     Path("my_helper.py").write_text("HERE = 2\n", encoding="utf-8")
     refused = kurt2rt.refused(*words)
-    assert "my_asking.Never" in refused
+    assert "my_learner.Mine" in refused
     assert "(what differs: learner)" in refused

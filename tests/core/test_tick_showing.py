@@ -3,7 +3,6 @@
 import pytest
 
 from kurt2rt.core.outcome import RefusalCode, ResultCode
-from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.teaching.commands import Drive, Stop, TeachShown, Undo
 from kurt2rt.core.teaching.driven_lessons import Segment
 from tests.core.test_tick import Corridor
@@ -23,15 +22,6 @@ def release(corridor: Corridor, press: int = 7) -> None:
 
 def segments(corridor: Corridor) -> tuple[Segment, ...]:
     return corridor.school.demonstration.segments(corridor.ticks)
-
-
-def taught(corridor: Corridor) -> list[tuple[str, str]]:
-    """Return command id and action of the demonstration's lessons."""
-    return [
-        (event.origin.command_id, event.rla.action)
-        for event in corridor.notebook.events
-        if isinstance(event, RlaCreated) and "-hold-" in event.origin.command_id
-    ]
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from tests.faults.table import Limits
 
-_SPEED_CM, _RAW = 2, 0
+_SPEED_CM = 2
 _SET_POINT = struct.Struct(">HhhH")
 _BRAKE_PAYLOAD = bytes((0, 0, 0x01, 0x03, 0xFF, 0x01, 0x03, 0xFF))
 """RAW, both sides: brake, no drive (docs/the-robot.md#control-modes)."""

@@ -23,7 +23,7 @@ from kurt2rt.service.settings import load_service
 from tests.channel.channel_fixture import ROBOT, STAMP, TASK, ChannelFixture, WideRobot
 from tests.core.rla.helpers import created, origin
 
-CHECKPOINT, STATUS, SECOND = 50, 200, 100
+CHECKPOINT, SECOND = 50, 100
 SERVICE = load_service().model_copy(update={"checkpoint_period_s": 0.5, "status_period_s": 2.0})
 
 

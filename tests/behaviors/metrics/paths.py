@@ -21,13 +21,6 @@ def along(points: Sequence[Point], step_m: float = STEP_M) -> Iterator[Pose]:
             yield Pose(ax + (bx - ax) * k / steps, ay + (by - ay) * k / steps, heading_rad)
 
 
-def arc(centre: Point, radius_m: float, from_deg: float, to_deg: float) -> list[Point]:
-    """Points of an arc; counter-clockwise when the angle grows."""
-    steps = max(2, round(abs(to_deg - from_deg) / 2))
-    angles = [math.radians(from_deg + (to_deg - from_deg) * k / steps) for k in range(steps + 1)]
-    return [_on_circle(centre, radius_m, angle) for angle in angles]
-
-
 def put(metric: TaskMetric, at: Point, towards_deg: float) -> None:
     metric.reset(Pose(*at, math.radians(towards_deg)))
 

@@ -53,7 +53,6 @@ PRINTABLE = st.characters(categories=("L", "N", "P", "S")) | st.just(" ")
 NAMES = st.text(PRINTABLE, max_size=64)
 WORDS = st.lists(NAMES, max_size=12).map(tuple)
 LEVELS = st.sampled_from((BASIC, MID))
-STOPPED = ActiveStop(StopReason.SAID_STOP, "Ann")
 
 
 def values(hint: Any) -> st.SearchStrategy[Any]:

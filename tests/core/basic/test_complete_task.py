@@ -5,7 +5,7 @@ from pathlib import Path
 import yaml
 
 from config import CONFIG_DIR
-from hal.robot import STANDSTILL, WheelSpeeds
+from hal.robot import STANDSTILL
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.task_settings import load_task
@@ -13,8 +13,7 @@ from tests.behaviors.helpers import counts, sensed
 from tests.core.basic.helpers import condition_at, keep, repertoire
 from tests.core.rla.helpers import created
 
-WALLS, FREE = counts(**dict.fromkeys(("s1", "s2", "s3", "s4", "s5", "s6", "s7", "s8"), 0.1)), counts()
-LEFT, RIGHT = WheelSpeeds(-0.20, 0.20), WheelSpeeds(0.20, -0.20)
+WALLS = counts(**dict.fromkeys(("s1", "s2", "s3", "s4", "s5", "s6", "s7", "s8"), 0.1))
 BASIC_LEVEL = (
     created(1, condition_at(WALLS), "spin_left", behaviour="turn_left"),
     created(2, condition_at(WALLS), "spin_right", behaviour="turn_right"),

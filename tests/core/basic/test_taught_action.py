@@ -14,7 +14,7 @@ from tests.core.basic.helpers import condition_at, keep, repertoire, with_repert
 from tests.core.rla.helpers import created
 
 FREE, WALL, CORNER = counts(), counts(s1=0.07, s2=0.07, s3=0.07, s4=0.07), counts(s9=0.1, s10=0.1, s11=0.1)
-FORWARD, SPIN_RIGHT = WheelSpeeds(0.30, 0.30), WheelSpeeds(0.20, -0.20)
+FORWARD = WheelSpeeds(0.30, 0.30)
 WALL_FOLLOWING = load_task("wall_following")
 FOLLOW = "kind: taught, name: follow_wall, task: wall_following, knowledge: taught.knowledge"
 

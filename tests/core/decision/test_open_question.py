@@ -12,7 +12,7 @@ from tests.teacher.helpers import teach
 
 BORDER = 135
 """Counts around which noise of a few counts is inside and outside R of the lesson at 100."""
-INSIDE, SURE = 134, 105
+INSIDE = 134
 ASKS = Standing(StandReason.ASKS, asks=True)
 
 

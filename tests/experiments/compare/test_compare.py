@@ -59,11 +59,6 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> tuple[Row, ...]:
     return read_rows(carry_out(plan, folder))
 
 
-def outcome_of(done: tuple[Row, ...], name: str) -> PupilOutcome:
-    (found,) = (each for each in done if each.of[1].name == name)
-    return found.rows[0]
-
-
 def test_each_pupil_is_examined_after_presses_and_at_the_end(done: tuple[Row, ...]) -> None:
     assert [each.of[1].name for each in done][:2] == [SHIPPED, "rla-door"]
     for each_row in done:

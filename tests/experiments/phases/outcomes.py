@@ -13,7 +13,6 @@ from kurt2rt.experiments.study.study_plan import StudyPlan
 from tests.experiments.rows import FAILED, PASSED, lesson, row
 
 TASK = load_task("wall_following")
-UNTAUGHT = (Step.UNTAUGHT, Step.PHASE_1, Step.CORRUPTED, Step.JUDGED)
 
 
 def exam(world: str = "a", *, passed: bool = True, **more: Any) -> DriveRow:

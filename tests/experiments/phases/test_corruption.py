@@ -14,7 +14,6 @@ from kurt2rt.experiments.phases.steps import Step, corrupt, critic_lessons, shuf
 
 PERIOD_S = 0.01
 
-ACTIONS = ("forward", "back", "stand")
 SETTINGS = load_critic()
 
 

@@ -8,7 +8,6 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.phases.steps import steps_of
 
 TASK = load_task("wall_following")
-STEPS = {step.name: step for step in steps_of(TASK)}
 
 
 @pytest.mark.parametrize("name", ["wall_following", "fleeing", "eight"])

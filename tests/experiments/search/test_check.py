@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 import yaml
-from optuna.trial import FrozenTrial, TrialState, create_trial
 
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.search.settings import Objective
@@ -24,17 +23,7 @@ from kurt2rt.experiments.study.jobs import ExaminedOutcome, StudyError
 from tests.experiments.search.test_score import robot
 from tests.experiments.search.tiny import tiny_plan
 
-SHIPPED = {"r": 1.0}
 OBJECTIVE: Objective = "passed_then_presses"
-
-
-def trial(number: int, score: float | None, r: float = 2.0) -> FrozenTrial:
-    from optuna.distributions import FloatDistribution
-
-    state = TrialState.COMPLETE if score is not None else TrialState.PRUNED
-    made = create_trial(state=state, value=score, params={"r": r}, distributions={"r": FloatDistribution(0.0, 9.0)})
-    made.number = number
-    return made
 
 
 def robots(*passed: int, presses: int = 10) -> tuple[ExaminedOutcome, ...]:

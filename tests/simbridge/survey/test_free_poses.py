@@ -5,18 +5,11 @@ import random
 import pytest
 
 from config.settings import SettingsError
-from simbridge.contracts.simulation import Pose
 from simbridge.robot.world import World
 from simbridge.survey import free_poses
 from simbridge.survey.free_poses import FreePoses
 from simbridge.worlds.world_loading import load_world
 from tests.simbridge.rig import ROBOT, post
-
-
-def poses(world: str, count: int = 12, *, close: bool = False) -> list[Pose]:
-    free = FreePoses(World(load_world(world)), ROBOT)
-    chance = random.Random(1)
-    return [free.draw(chance, close=close) for _ in range(count)]
 
 
 def test_free_poses_without_any_name_the_world(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -81,7 +81,6 @@ HELLO = {
 
 
 HELD = Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
-NOT_SAVED = Outcome.of(RefusalCode.NOT_SAVED, says="ENOSPC")
 
 
 LONGEST_S = 60.0
@@ -123,15 +122,6 @@ async def client(pairing: Pairing, robot: StandInRobot) -> AsyncIterator[Teacher
     async with in_a_task_of_its_own(opened) as client:
         await first_state(client)
         yield client
-
-
-def always(reply: Reply) -> Callable[[object], Awaitable[Reply]]:
-    """Return a robot's mind that gives the same reply to each request."""
-
-    async def mind(_: object) -> Reply:
-        return reply
-
-    return mind
 
 
 async def first_state(client: TeacherClient) -> None:

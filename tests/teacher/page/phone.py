@@ -134,10 +134,6 @@ class Phone:
         else:
             self.run(_TIDY)
 
-    def reload(self) -> None:
-        """Load the page again."""
-        self.driver.refresh()
-
     def leave(self) -> None:
         """Go where there is nothing, and no server."""
         if self._at != _NOWHERE:

@@ -30,7 +30,7 @@ from tests.teacher.scripted.test_teacher import teacher
 ROBOT = load_robot()
 TASK = taught_by(load_task("wall_following"), load_teacher("ordinary"))
 TIMING = FeedbackTiming(reaction=10, every={-1: 20, 0: 40, 1: 40})
-GOOD, NEUTRAL, BAD = 1, 0, -1
+NEUTRAL, BAD = 0, -1
 
 
 class LeftIsTheVerdict:

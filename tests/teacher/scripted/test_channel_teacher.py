@@ -122,14 +122,6 @@ async def client(robot: StandInRobot, tmp_path: Path) -> AsyncIterator[TeacherCl
         yield client
 
 
-@pytest.fixture
-async def impatient_client(robot: StandInRobot, tmp_path: Path) -> AsyncIterator[TeacherClient]:
-    """Give up soon, for a robot whose answers are lost on purpose."""
-    folder = tmp_path / "devices" / AUTO
-    async with in_a_task_of_its_own(TeacherClient(folder, port=robot.port, patience_s=0.15)) as client:
-        yield client
-
-
 async def lesson(
     client: TeacherClient, robot: StandInRobot, ends_with: str, task: TaskSettings | None = None
 ) -> list[str]:
@@ -163,10 +155,6 @@ async def lesson(
 
 ALONE = "(phase 5)"
 STAYS = "the robot stays"
-
-
-def phases(robot: StandInRobot) -> list[Phase]:
-    return [each.phase for each in robot.all_of(SetPhase)]
 
 
 async def test_teach_by_script_task_with_a_mid_level_is_refused(robot: StandInRobot, client: TeacherClient) -> None:

@@ -219,10 +219,6 @@ def touched(wrong: int, *, late: int = 40) -> list[TeacherView]:
     return [doing("a")] * 50 + [doing("b")] * wrong + [doing("a")] * late + [touching] * 200 + [standing()] * 600
 
 
-def corrected_ticks(teacher: ScriptedPerson, views: list[TeacherView]) -> list[int | None]:
-    return [each.decision_tick for each in given(teacher, views).values() if isinstance(each, Correct)]
-
-
 def test_update_touch_corrects_the_mistake_before_it() -> None:
     stop, correction, resume, *more = given(person(profile=LOOKS_BACK, look_back=SURE), touched(wrong=25)).values()
     assert isinstance(stop, Stop)

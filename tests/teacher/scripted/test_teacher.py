@@ -81,11 +81,6 @@ def test_command_ids_are_unique_and_equal_in_each_run() -> None:
     assert ids() == ids() == [f"s-{number}" for number in range(1, 12)]
 
 
-def answers_to(person: ScriptedTeacher, questions: int) -> list[str]:
-    commands = given(person, [asking()] * questions)
-    return [command.action for command in commands.values() if isinstance(command, Teach)]
-
-
 def test_corrections_with_errors_err_at_the_rate() -> None:
     commands = given(teacher(patience_s=0.0, error_rate=0.25), [doing("d")] * 4000)
     right = sum(isinstance(command, Correct) and command.action == "a" for command in commands.values())
