@@ -3,11 +3,12 @@
 import shlex
 from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, Field, fields
-from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
 from typer.models import ArgumentInfo, OptionInfo
+
+from config.settings_files import YAML_SUFFIXES
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -59,10 +60,10 @@ def _name_of(info: OptionInfo) -> str:
 
 
 def _text(value: object) -> str:
-    """Return a value as it is typed; of a path only its last part, which is the same on all machines."""
-    if isinstance(value, Enum):
-        return str(value.value)
-    if isinstance(value, float):
-        return f"{value:g}"
-    text = str(value)
-    return shlex.quote(text if "=" in text else Path(text).name)
+    """Return a value as it is typed; of a file only its name, which is the same on all machines.
+
+    A name of a robot's plug-in, such as `school/fleeing`, stays whole.
+    """
+    text = f"{value:g}" if isinstance(value, float) else str(value)
+    is_file = "=" not in text and (isinstance(value, Path) or text.endswith(YAML_SUFFIXES))
+    return shlex.quote(Path(text).name if is_file else text)
