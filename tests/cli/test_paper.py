@@ -75,23 +75,12 @@ def test_a_folder_that_cannot_be_made_is_refused(kurt2rt: CommandLine, tmp_path:
 
 
 @pytest.mark.deep
-def test_paper_quick_runs_again_only_the_job_without_result(kurt2rt: CommandLine) -> None:
-    words = ("study", "paper", "--quick", "--jobs", "2")
-    first = kurt2rt(*words)
-    assert first.exit_code == 0, first.err
-    assert "A part only" in first.out
-    assert "MISSED" not in first.out
-    results = sorted(Path("results/paper-quick/results").glob("[!w]*/*.json"))  # without witnesses
-    assert len(results) == 28
-    contents = [path.read_bytes() for path in results]
-    stamps_ns = [path.stat().st_mtime_ns for path in results]
-
-    results[3].unlink()
-    again = kurt2rt(*words)
-    assert again.out == first.out
-    assert [path.read_bytes() for path in results] == contents
-    changed = [path.stat().st_mtime_ns != stamp_ns for path, stamp_ns in zip(results, stamps_ns, strict=True)]
-    assert changed == [place == 3 for place in range(28)]
+def test_paper_quick_has_a_result_of_each_job(kurt2rt: CommandLine) -> None:
+    said = kurt2rt("study", "paper", "--quick", "--jobs", "2")
+    assert said.exit_code == 0, said.err
+    assert "A part only" in said.out
+    assert "MISSED" not in said.out
+    assert len(list(Path("results/paper-quick/results").glob("[!w]*/*.json"))) == 28  # without witnesses
 
 
 @pytest.mark.deep  # quick ones: a lesson of many robots in test_engine, and the witness of a job
