@@ -34,7 +34,9 @@ def test_search_checks_once_and_says_where_it_came_from(kurt2rt: CommandLine, tm
     assert page.images == ["Trials"]
     assert all(address.startswith("data:") for address in page.addresses)
 
+    results = {path: path.stat().st_mtime_ns for path in Path("made").rglob("*.json")}
     again = kurt2rt("study", "search", tiny_search(tmp_path), *WORDS, "--json")
+    assert {path: path.stat().st_mtime_ns for path in results} == results  # nothing is measured again
     told = json.loads(again.out)
     assert told["verdict"] == found["verdict"]
     assert (told["better"] is None) == (found["changes"] == {})

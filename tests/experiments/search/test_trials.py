@@ -1,6 +1,5 @@
 """Trials: the same at every run, in any number of processes, and after any interruption."""
 
-import shutil
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -12,7 +11,7 @@ from kurt2rt.experiments.search.plan import SearchPlan
 from kurt2rt.experiments.search.trials import SearchTrials, run_trials
 from kurt2rt.experiments.study import provenance
 from kurt2rt.experiments.study.jobs import StudyError
-from kurt2rt.experiments.study.pool import PoolProgress, Waves, open_processes, run_missing
+from kurt2rt.experiments.study.pool import Waves, open_processes, run_missing
 from tests.experiments.search.tiny import tiny_plan
 from tests.experiments.study.here import HERE
 
@@ -23,43 +22,27 @@ def trials_of(found: SearchTrials) -> list[Trial]:
     return [(each.params, each.state, each.value, each.intermediate_values) for each in found.all]
 
 
-def run(plan: SearchPlan, trials: int = 3, progress: list[PoolProgress] | None = None) -> list[Trial]:
+def run(plan: SearchPlan) -> list[Trial]:
     with plan.parts["results"].held():
-        return trials_of(run_trials(plan, trials, HERE, (progress if progress is not None else []).append))
+        return trials_of(run_trials(plan, 3, HERE, lambda _: None))
 
 
 class Whole(NamedTuple):
     """A search that was never interrupted."""
 
-    folder: Path
+    plan: SearchPlan
     trials: list[Trial]
-    progress: list[PoolProgress]
 
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Whole:
-    folder, progress = tmp_path_factory.mktemp("whole"), list[PoolProgress]()
-    return Whole(folder, run(tiny_plan(folder), progress=progress), progress)
+    plan = tiny_plan(tmp_path_factory.mktemp("whole"))
+    return Whole(plan, run(plan))
 
 
 @pytest.fixture
 def whole(finished: Whole) -> list[Trial]:
     return finished.trials
-
-
-@pytest.fixture
-def copied(finished: Whole, tmp_path: Path) -> SearchPlan:
-    """Return the plan of a copy of the finished search."""
-    plan = tiny_plan(tmp_path)
-    shutil.copytree(finished.folder / "made", plan.folder)
-    return plan
-
-
-def test_finished_search_is_left_alone(whole: list[Trial], copied: SearchPlan) -> None:
-    files = sorted(path for path in copied.folder.rglob("*.json"))
-    before = [path.stat().st_mtime_ns for path in files]
-    assert run(copied) == whole
-    assert [path.stat().st_mtime_ns for path in files] == before
 
 
 @pytest.mark.deep
@@ -73,12 +56,11 @@ class _Stop:
     left = 0
 
 
-@pytest.mark.parametrize("waves", [pytest.param(1, marks=pytest.mark.deep), 3])
 def test_search_interrupted_between_robots_goes_on(
-    waves: int, whole: list[Trial], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    whole: list[Trial], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stop = _Stop()
-    stop.left = waves
+    stop.left = 3
 
     def stopping(waves: Waves, *others: Any) -> None:
         if not stop.left:
@@ -93,12 +75,13 @@ def test_search_interrupted_between_robots_goes_on(
     assert run(tiny_plan(tmp_path)) == whole
 
 
-def test_results_of_another_search_are_refused(copied: SearchPlan, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_results_of_another_search_are_refused(finished: Whole, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = finished.plan.folder.parent
     with pytest.raises(StudyError, match=r"what differs: task\)"):
-        run(tiny_plan(copied.folder.parent, sampler_seed=1))
+        run(tiny_plan(folder, sampler_seed=1))
     monkeypatch.setattr(provenance, "source_hash", lambda: "new")
     with pytest.raises(StudyError, match=r"what differs: source\)"):
-        run(tiny_plan(copied.folder.parent))
+        run(tiny_plan(folder))
 
 
 def test_trial_that_cannot_beat_the_median_is_pruned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,7 +2,6 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.study.jobs import Results
 from kurt2rt.experiments.study.pool import open_processes, run_missing
 from kurt2rt.experiments.study.seeds import forget_lost_robots, make_plan, read_results
@@ -14,12 +13,8 @@ from tests.experiments.study.here import parts_in
 TASK = short_task(2.5, 1.0, 1.0)
 
 
-def plan_in(folder: Path, *seeds: int, task: TaskSettings = TASK) -> StudyPlan[None]:
-    return make_plan(task, seeds, parts_in(folder))
-
-
 def taught(folder: Path, *seeds: int, processes: int = 1) -> StudyPlan[None]:
-    plan, results = plan_in(folder, *seeds), Results(folder)
+    plan, results = make_plan(TASK, seeds, parts_in(folder)), Results(folder)
     with results.held(), open_processes(processes) as executor:
         run_missing(plan.waves, results, executor, lambda _: None)
     return plan
@@ -34,20 +29,16 @@ def test_robots_of_a_seed_study_are_taught_once(tmp_path: Path) -> None:
     assert (outcome.lesson.seed, outcome.lesson.world, outcome.drives[0].trail) == (5, "a", ())
     assert outcome.lesson.rlas > 0
 
-    forget_lost_robots(plan)
-    assert results.missing(plan.waves[0]) == []
-    (tmp_path / "wall_following-5.knowledge").unlink()
-    forget_lost_robots(plan)
-    assert results.missing(plan.waves[0]) == [0]
-
-
-def test_robot_of_another_task_is_taught_again(tmp_path: Path) -> None:
-    taught(tmp_path, 5)
-    (other,) = plan_in(tmp_path, 5, task=short_task(2.5, 1.0, 0.5)).waves[0]
-    assert Results(tmp_path).missing([other]) == [0]
-    other.run(lambda _done_s: None)
-    assert Results(tmp_path).missing([other]) == []
+    other = make_plan(short_task(1.0, 0.5, 0.5), [5], parts_in(tmp_path))  # another task: taught again
+    assert results.missing(other.waves[0]) == [0]
+    other.waves[0][0].run(lambda _done_s: None)
     assert (tmp_path / "wall_following-5.knowledge.1").exists()
+
+    forget_lost_robots(other)
+    assert results.missing(other.waves[0]) == []
+    (tmp_path / "wall_following-5.knowledge").unlink()
+    forget_lost_robots(other)
+    assert results.missing(other.waves[0]) == [0]
 
 
 @pytest.mark.deep
