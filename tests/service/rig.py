@@ -36,13 +36,13 @@ LONGEST_S = 60.0
 """Ends a test whose event never comes; none waits for it."""
 
 
-def eager_task(radius: float = 100.0) -> TaskSettings:
+def eager_task() -> TaskSettings:
     """Return settings for a robot that soon asks again and a teacher that answers at once."""
     task = load_task("wall_following")
     teacher = task.teaching.teacher.model_copy(update={"reaction_s": 0.03, "patience_s": 0.05})
     return task.model_copy(
         update={
-            "learning": task.learning.model_copy(update={"radius": radius}),
+            "learning": task.learning.model_copy(update={"radius": 100.0}),
             "teaching": task.teaching.model_copy(update={"teacher": teacher}),
         }
     )
@@ -78,7 +78,6 @@ class Rig:
         watch: Callable[[TickRecord], Command | None],
         *,
         task: TaskSettings | None = None,
-        duration_s: float = LONGEST_S,
     ) -> ProgramStatus | None:
         """Run the service; `watch` sees each tick, may answer it and ends the run when it has seen enough."""
 
@@ -90,7 +89,7 @@ class Rig:
             status=self.statuses.append, question=self.questions.append, acknowledged=self.settled.append
         )
         settings = RunSettings(SETTINGS, task or eager_task(), settings_for(knowledge))
-        return await serve(self.robot, settings, screen, ServeOptions(on_tick=teacher, duration_s=duration_s))
+        return await serve(self.robot, settings, screen, ServeOptions(on_tick=teacher, duration_s=LONGEST_S))
 
 
 def settings_for(knowledge: Path) -> ServiceSettings:
@@ -98,10 +97,10 @@ def settings_for(knowledge: Path) -> ServiceSettings:
 
 
 @contextmanager
-def rig(seed: int = 1) -> Iterator[Rig]:
+def rig() -> Iterator[Rig]:
     spec = f"virtual:{uuid.uuid4()}"
     far_end, robot_bus, ear = open_bus(spec), open_bus(spec), open_bus(spec)
-    simulated = SimulatedKurt2(SETTINGS, load_world("a"), far_end, seed)
+    simulated = SimulatedKurt2(SETTINGS, load_world("a"), far_end, seed=1)
     robot = StallTolerantKurt2(SETTINGS, robot_bus)
     simulation = RealtimeSimulation(simulated)
     simulation.start()
@@ -117,11 +116,11 @@ def rig(seed: int = 1) -> Iterator[Rig]:
         ear.shutdown()
 
 
-def scripted(task: TaskSettings | None = None, seed: int = 1) -> Callable[[TickRecord], Command | None]:
+def scripted() -> Callable[[TickRecord], Command | None]:
     """Return the scripted teacher for the robot's own program; it corrects after the task's time of phase 1."""
-    task = task or eager_task()
+    task = eager_task()
     actions = tuple(load_repertoire(task.repertoire, SETTINGS))
-    teacher = build_teacher(task, SETTINGS, actions, seed=seed, session=f"scripted-{uuid.uuid4().hex[:12]}")
+    teacher = build_teacher(task, SETTINGS, actions, seed=1, session=f"scripted-{uuid.uuid4().hex[:12]}")
     corrections_from = round(task.teaching.supervised_s / SETTINGS.cycle_s)
 
     def watch(record: TickRecord) -> Command | None:

@@ -30,7 +30,7 @@ SERVICE = load_service().model_copy(update={"checkpoint_period_s": 0.5, "status_
 class Shift:
     """A robot, its journal on a real disk, and the rounds that are made after each of its ticks."""
 
-    def __init__(self, path: Path, *, with_channel: bool = False) -> None:
+    def __init__(self, path: Path) -> None:
         self.path = path
         self.writer = JournalWriter(open_for_teaching(path, ROBOT, TASK).journal, lambda: STAMP)
         self.desk = ChannelFixture(keeper=self.writer)
@@ -43,12 +43,10 @@ class Shift:
         screen = ProgramConsole(
             status=self.statuses.append, question=self.questions.append, acknowledged=self.settled.append
         )
-        channel = self.desk.channel if with_channel else None
         self.rounds = PostTick(
             RobotService(self.desk.runtime, self.writer, SERVICE, self.stamps),
             screen,
             on_tick=self._watch,
-            channel=channel,
         )
         self._tick = 10_000
 

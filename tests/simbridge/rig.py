@@ -28,8 +28,8 @@ STAND = SpeedControl(Mode.SPEED_CM, 0, 0)
 _numbers = itertools.count()
 
 
-def board(from_m: Point, to_m: Point, thickness_m: float = 0.02, name: str = "board") -> WallSettings:
-    return WallSettings(name=name, from_m=from_m, to_m=to_m, thickness_m=thickness_m)
+def board(from_m: Point, to_m: Point, thickness_m: float = 0.02) -> WallSettings:
+    return WallSettings(name="board", from_m=from_m, to_m=to_m, thickness_m=thickness_m)
 
 
 def box(*corners: Point, name: str = "box") -> PolygonObstacleSettings:

@@ -3,13 +3,11 @@
 from simbridge.worlds.world_loading import load_world
 from tests.simbridge.rig import Rig
 
-SEED = 7
 
-
-def hashes(seed: int = SEED) -> list[str]:
+def hashes() -> list[str]:
     """Return the state hash of each second of a run through world B with collisions and a moved robot."""
     found = []
-    with Rig(load_world("b"), seed) as rig:
+    with Rig(load_world("b"), seed=7) as rig:
         for second in range(8):
             rig.drive(25 + 5 * second, 40 - 6 * second, 1.0)
             if second == 5:

@@ -28,8 +28,8 @@ LAW = LawFound(
 )
 
 
-def progress(findings: Findings, outcome: StepOutcome = StepOutcome.PASSED, **other: StepRecord) -> Progress:
-    steps = {step.name: StepRecord(outcome=outcome, at=TODAY, who="anna") for step in STEPS}
+def progress(findings: Findings, **other: StepRecord) -> Progress:
+    steps = {step.name: StepRecord(outcome=StepOutcome.PASSED, at=TODAY, who="anna") for step in STEPS}
     return Progress(name="robbie", base="kurt2", bus="can0", findings=findings, steps={**steps, **other})
 
 

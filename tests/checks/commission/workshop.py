@@ -43,7 +43,6 @@ class Workshop:
         self,
         true: Kurt2Settings = BASE,
         wiring: Wiring | None = None,
-        seed: int = 1,
         hand_radius_m: float = 0.05,
         spec: str = "",
     ) -> None:
@@ -53,7 +52,7 @@ class Workshop:
         self.robot_end = (
             open_bus(spec) if spec else CanBus(self.spec.partition(":")[2], lambda name: WiredEnd(name, self.wiring))
         )
-        self.robot = SimulatedKurt2(true, _room(hand_radius_m), self.robot_end, seed)
+        self.robot = SimulatedKurt2(true, _room(hand_radius_m), self.robot_end, seed=1)
         self.stranger: CanBus | None = None
         """Another node, which sends CONTROL as soon as a wheel turns, after `stranger_waits_s`."""
         self.stranger_waits_s = 0.0

@@ -16,10 +16,10 @@ from tests.experiments.helpers import ROBOT, STAGE
 TASKS = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))
 
 
-def lasting(name: str, supervised_s: float = 4.0, corrections_s: float = 4.0, exam_s: float = 7.0) -> TaskSettings:
+def lasting(name: str, supervised_s: float = 4.0, corrections_s: float = 4.0) -> TaskSettings:
     task = load_task(name)
     teaching = task.teaching.model_copy(update={"supervised_s": supervised_s, "corrections_s": corrections_s})
-    exam = task.exam.model_copy(update={"duration_s": exam_s})
+    exam = task.exam.model_copy(update={"duration_s": 7.0})
     return task.model_copy(update={"teaching": teaching, "exam": exam})
 
 

@@ -12,7 +12,7 @@ import yaml
 from config import CONFIG_DIR
 from config.settings import SettingsError
 from kurt2rt.experiments.paper.settings import QUICK, WHOLE, ExperimentSettings, Extent, PaperSettings, load_paper
-from kurt2rt.experiments.paper.study import GrowthJob, PaperExtent, Reading, TaughtJob, make_plan, unseen_of
+from kurt2rt.experiments.paper.study import GrowthJob, PaperExtent, TaughtJob, make_plan, unseen_of
 from kurt2rt.experiments.paper.tables import reasons_not_to_judge
 from kurt2rt.experiments.study.jobs import StudyError
 from kurt2rt.experiments.study.study_plan import StudyPlan
@@ -24,10 +24,9 @@ def planned(
     *tasks: str,
     extent: Extent = WHOLE,
     seeds: tuple[int, ...] = (100, 101, 102),
-    readings: tuple[Reading, ...] = ("shipped",),
     paper: PaperSettings | None = None,
 ) -> StudyPlan[PaperExtent]:
-    return make_plan(paper or load_paper(), extent, seeds, readings, parts_in(), tasks=tasks)
+    return make_plan(paper or load_paper(), extent, seeds, ["shipped"], parts_in(), tasks=tasks)
 
 
 def first_of(plan: StudyPlan[PaperExtent]) -> TaughtJob:

@@ -45,8 +45,8 @@ def aged(**ages_s: float) -> Snapshot:
 class Ward:
     """One robot, looked at once a second."""
 
-    def __init__(self, *, tolerates_stalls: bool = False) -> None:
-        self.book = Diagnostics(load_kurt2(), tolerates_stalls=tolerates_stalls)
+    def __init__(self) -> None:
+        self.book = Diagnostics(load_kurt2(), tolerates_stalls=False)
         self.counted = CounterGrowth()
         self.now_s = 50.0
         self.counters = {"missed": 0, "junk": 0, "drops lines": 0}
