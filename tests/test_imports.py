@@ -188,18 +188,18 @@ def test_core_folders_import_lower_folders() -> None:
     assert not wrong, "; ".join(wrong)
 
 
-def test_config_needs_nothing_but_a_parser_of_yaml_and_pydantic() -> None:
+@pytest.mark.parametrize(
+    ("package", "needed"),
+    [
+        ("config", {"config", "yaml", "pydantic", "pydantic_core"}),
+        ("simbridge.contracts", {"config", "hal", "simbridge", "numpy", "matplotlib"}),  # no simulator
+    ],
+)
+def test_a_package_needs_nothing_but(package: str, needed: set[str]) -> None:
     for name, path in modules().items():
-        if is_below(name, "config"):
+        if is_below(name, package):
             roots = {each.split(".")[0] for each in modules_imported(path.read_text(encoding="utf-8"), name)}
-            assert not roots - sys.stdlib_module_names - {"config", "yaml", "pydantic", "pydantic_core"}
-
-
-def test_contracts_of_a_simulation_need_no_simulator() -> None:
-    for name, path in modules().items():
-        if is_below(name, "simbridge.contracts"):
-            roots = {each.split(".")[0] for each in modules_imported(path.read_text(encoding="utf-8"), name)}
-            assert not roots - sys.stdlib_module_names - {"config", "hal", "simbridge", "numpy", "matplotlib"}
+            assert not roots - sys.stdlib_module_names - needed
 
 
 @pytest.mark.parametrize("guard", GUARDS)

@@ -113,20 +113,18 @@ def test_watch_ignores_a_short_reading_out_of_range(drive: Drive) -> None:
     assert drive.run(2000, driving=False) == ()
 
 
-def test_watch_finds_a_dark_sensor_between_seeing_ones(drive: Drive) -> None:
+@pytest.mark.parametrize(
+    ("mean", "spread", "ticks", "fault"),
+    [(70, 1.5, 1000, SensorFault.SEES_NOTHING), (550, 8, 3000, SensorFault.SEES_A_PHANTOM)],
+)
+def test_watch_finds_a_sensor_unlike_its_neighbours(
+    drive: Drive, mean: float, spread: float, ticks: int, fault: SensorFault
+) -> None:
     drive.near = ("s1", "s3", "s4", "s2")
     flicker = random.Random(1)
-    drive.faults["s3"] = lambda _: round(flicker.gauss(70, 1.5))
-    (found,) = drive.run(1000)
-    assert (found.name, found.fault) == ("s3", SensorFault.SEES_NOTHING)
-
-
-def test_watch_finds_a_phantom_between_dark_neighbours(drive: Drive) -> None:
-    drive.near = ("s1", "s3", "s4", "s2")
-    flicker = random.Random(1)
-    drive.faults["s3"] = lambda _: round(flicker.gauss(550, 8))
-    (found,) = drive.run(3000)
-    assert (found.name, found.fault) == ("s3", SensorFault.SEES_A_PHANTOM)
+    drive.faults["s3"] = lambda _: round(flicker.gauss(mean, spread))
+    (found,) = drive.run(ticks)
+    assert (found.name, found.fault) == ("s3", fault)
 
 
 def test_watch_takes_a_thin_post_for_no_phantom(drive: Drive) -> None:

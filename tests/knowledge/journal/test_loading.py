@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.rla.events import RlaCreated, SituationNamed
+from kurt2rt.core.rla.events import RlaCreated, SituationNamed, TeachingEvent
 from kurt2rt.core.rla.rla import CRITIC, MID, Rla
 from kurt2rt.core.rla.statistics import BEST_SCORE, Statistics
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding
@@ -113,17 +113,10 @@ def test_open_missing_level_is_added_and_extra_level_kept(path: Path) -> None:
         assert check_knowledge(journal) == []
 
 
-def test_check_rla_of_an_unknown_level_is_found(path: Path) -> None:
+@pytest.mark.parametrize("event", [appraisal(1), SituationNamed("door", (1.0,), MID, origin("name-1", 9))])
+def test_check_event_of_an_unknown_level_is_found(path: Path, event: TeachingEvent) -> None:
     with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(appraisal(1), STAMP)])
-        (error,) = check_knowledge(journal)
-
-    assert (error.code, error.where) == (KnowledgeCode.LESSON_MISFIT, f"{path}: row 1")
-
-
-def test_check_name_at_an_unknown_level_is_found(path: Path) -> None:
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(SituationNamed("door", (1.0,), MID, origin("name-1", 9)), STAMP)])
+        journal.append([JournalEntry(event, STAMP)])
         (error,) = check_knowledge(journal)
 
     assert (error.code, error.where) == (KnowledgeCode.LESSON_MISFIT, f"{path}: row 1")
