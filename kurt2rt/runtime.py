@@ -25,6 +25,7 @@ from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.perception.definition import SituationDefinition, feature_weights, load_situation
+from kurt2rt.core.perception.mirror_image import build_mirror
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.planning.navigator import Navigator
 from kurt2rt.core.progress_meter import ProgressMeter
@@ -139,15 +140,25 @@ class Runtime:
 
 
 def empty_system(
-    task: TaskSettings, definition: SituationDefinition, critic: CriticSettings, mid: MidSettings | None
+    settings: RobotSettings,
+    task: TaskSettings,
+    definition: SituationDefinition,
+    critic: CriticSettings,
+    mid: MidSettings | None,
 ) -> RlaSystem:
-    """Return the RLA system of all levels of a task, without any RLA. Raises config.settings.SettingsError."""
+    """Return the RLA system of all levels of a task for a robot, without any RLA.
+
+    Raises config.settings.SettingsError.
+    """
     changed = ((each.features, each.weight) for each in task.learning.weights)
     weights = feature_weights(definition, changed, task.learning.history_weight, task.name)
     others = {CRITIC: Space(len(critic.names), critic.learning.radius, critic.weight_vector)}
     if mid is not None:
         others[MID] = mid.space
-    system = RlaSystem(definition.dimensions, task.learning.radius, weights, others=others)
+    mirror = None
+    if task.learning.mirrored:
+        mirror = build_mirror(definition, settings.infrared, load_task_repertoire(task, settings), task.behaviours)
+    system = RlaSystem(definition.dimensions, task.learning.radius, weights, others=others, mirror=mirror)
     if task.learning.skip_uncertain_lessons:
         system.is_guess = GuessedLessons(system, action_groups(task.repertoire)).includes
     return system
@@ -166,7 +177,7 @@ class _Assembly:
         self.critic = critic_of(task.critic, settings)
         mid_settings = None if task.mid is None else load_mid_level(task.mid)
         minimum_action_ticks = round(task.learning.minimum_action_s / self._period_s)
-        self._system = empty_system(task, self.definition, self.critic, mid_settings)
+        self._system = empty_system(settings, task, self.definition, self.critic, mid_settings)
         self.reinforcement = self._restored_reinforcement()
         self.active_behaviour = options.active_behaviour or ActiveBehaviour(task.behaviours)
         self.statistics = options.statistics or StatisticsCounter()

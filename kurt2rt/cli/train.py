@@ -91,8 +91,11 @@ def _task_name(options: TrainOptions) -> str:
 
 
 def _setup(task_name: str, options: TrainOptions) -> TrainSetup:
+    changes = changes_of(options.changes)
+    if options.until_right:
+        changes["teaching.until_right"] = "true"
     task, robot = load_task_and_robot(
-        task_name, options.robot_settings, paper_defaults=options.paper_defaults, changes=changes_of(options.changes)
+        task_name, options.robot_settings, paper_defaults=options.paper_defaults, changes=changes
     )
     taught = taught_by_named(task, options.teacher)
     command = typed_command("train", options, {"task": task_name})

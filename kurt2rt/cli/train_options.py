@@ -37,6 +37,14 @@ class TrainOptions(EngineOptions):
     teacher: Teacher = DEFAULT_TEACHER
     paper_defaults: PaperDefaults = False
     changes: Changes = None
+    until_right: Annotated[
+        bool,
+        typer.Option(
+            "--until-right",
+            help="End each lesson after a clean drive, without press, question, touch or rescue, and not by the clock; "
+            "it lasts at most three times as long.",
+        ),
+    ] = False
     seed: Seed = 1
     knowledge: Annotated[
         Path | None,

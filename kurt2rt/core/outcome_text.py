@@ -117,7 +117,8 @@ def _shown(fields: Mapping[str, Field]) -> dict[str, str | int]:
         shown["sought"] = goal_text(str(fields.get("status")), str(fields["goal"]))
     rla = fields.get("rla")
     if isinstance(rla, int):
-        shown["title"] = rla_title(rla, str(fields.get("behaviour", "")), str(fields.get("level", BASIC)))
+        behaviour, level = str(fields.get("behaviour", "")), str(fields.get("level", BASIC))
+        shown["title"] = rla_title(rla, behaviour, level, mirrored=fields.get("mirrored") is True)
     return shown
 
 

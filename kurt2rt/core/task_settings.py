@@ -31,6 +31,9 @@ AnyMid = Annotated[
     Discriminator(lambda mid: "settings" if isinstance(mid, dict | MidSettings) else "name"),
 ]
 
+_LONGEST_UNTIL_RIGHT = 3
+"""Longest time of a lesson until right, as a multiple of its time by the clock."""
+
 Place = Literal["starts", "in_sight"]
 """Pose to set the robot down at: a start pose, or a random free one in sight of something near (a post, if there are
 posts)."""
@@ -71,6 +74,8 @@ class LearningSettings(Settings):
     skip_uncertain_lessons: bool = False
     """Let neighbours answer, without a teacher, instead of a lesson of a hold that differs from its five nearest
     neighbours of other presses."""
+    mirrored: bool = False
+    """Each RLA also answers in the mirror image of its situation, with the mirror image of its action."""
     minimum_action_s: Annotated[float, Field(ge=0, le=5)]
     teacher_delay_s: Annotated[float, Field(ge=0, le=2)] = 1.0
     """Time between a situation and a person's press about it, until four answers have shown the teacher's own."""
@@ -90,6 +95,7 @@ class PaperDefaults(LearningSettings):
     ask_radius_fraction: Annotated[float, Field(ge=1, le=1)] = 1.0
     answers_override_holds: Literal[False] = False
     skip_uncertain_lessons: Literal[False] = False
+    mirrored: Literal[False] = False
     minimum_action_s: Annotated[float, Field(ge=0, le=0)] = 0.0
     doubt: Annotated[None, _NO_DOUBT] = None
 
@@ -113,6 +119,11 @@ class TeachingSettings(Settings):
     """Length of phase 1, in which the teacher only answers questions."""
     corrections_s: Seconds
     """Length of phase 2, in which the teacher corrects as well."""
+    until_right: bool = False
+    """End the lesson after a clean drive in phase 2, in place of by the clock; it then lasts at most three times as
+    long."""
+    clean_drive_s: Annotated[float, Field(gt=0, le=1000)] = 60.0
+    """Length of that drive: without press, question, touch or rescue."""
     rescue_after_s: Annotated[float, Field(gt=0, le=1000)]
     """Time of driving at full speed without progress or question after which the robot is set down elsewhere."""
     lesson_speed: Annotated[float, Field(ge=SLOWEST, le=1)] = 1.0
@@ -126,8 +137,8 @@ class TeachingSettings(Settings):
 
     @property
     def duration_s(self) -> float:
-        """Return the robot time of the whole training run, in s."""
-        return self.supervised_s + self.corrections_s
+        """Return the robot time of the whole training run, in s; the longest if it ends by itself."""
+        return (self.supervised_s + self.corrections_s) * (_LONGEST_UNTIL_RIGHT if self.until_right else 1)
 
     @property
     def slow_rescue_after_s(self) -> float:

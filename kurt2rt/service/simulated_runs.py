@@ -223,7 +223,7 @@ def _require_able(events: Iterable[TeachingEvent], robot: RobotSettings, task: T
     """Require knowledge that the next run can act with. Raises UnknownActionError, UnknownBehaviourError."""
     mid = None if task.mid is None else load_mid_level(task.mid)
     definition = load_situation(task.situation, robot.infrared.names)
-    system = empty_system(task, definition, load_critic(task.critic), mid)
+    system = empty_system(robot, task, definition, load_critic(task.critic), mid)
     system.apply_all(events)
     wanted = ActiveBehaviour(task.behaviours)
     BasicLevel(system, load_task_repertoire(task, robot), 1, wanted)

@@ -55,7 +55,7 @@ class LessonLog(NamedTuple):
     right: NDArray[np.int8]
     """Index of the action that the policy takes for right."""
     rlas: NDArray[np.int32]
-    """RLA that drives; 0 for none."""
+    """RLA that drives, with a minus sign if it drives as its mirror image; 0 for none."""
     slow: NDArray[np.bool_]
     """True where a slow lesson slowed the wheels."""
     sure: NDArray[np.bool_]
@@ -71,6 +71,7 @@ class TaughtRlas(NamedTuple):
     """RLAs that a compiled robot decides by: those of the wanted behaviour, which compete, oldest first."""
 
     rla_ids: Sequence[int]
+    """With a minus sign for a mirror image."""
     conditions: Sequence[NDArray[np.float64]]
     """Weighted features of each RLA, the recent ones first, and averages if they count, (values,)."""
     radii: Sequence[float]

@@ -89,6 +89,8 @@ class StateBuilder:
             cause=decision.cause.value,
             action=decision.action,
             rla=decision.rla_id,
+            mirrored=decision.mirrored,
+            nearest_mirrored=decision.match is not None and decision.match.rla.mirrored,
             question=self._question(record),
             teacher=commands.authority.teacher,
             by_hand=commands.authority.is_manual(record.tick),

@@ -123,7 +123,7 @@ def contradictions(
     name = task_of_file(file, task_name)
     task, robot = load_task(name), load_robot_of(robot_name, name)
     definition = load_situation(task.situation, robot.infrared.names)
-    system = empty_system(task, definition, critic_of(task.critic, robot), None)
+    system = empty_system(robot, task, definition, critic_of(task.critic, robot), None)
     system.apply_all(read_lessons(file, robot, task))
     groups = action_groups(task.repertoire)
     found = [each for rla in system.rlas if (each := find_contradiction(system, rla, groups)) is not None]

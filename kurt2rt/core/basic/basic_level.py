@@ -197,12 +197,13 @@ class BasicLevel:
             return Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, match)
         action, doubts = self._held.name, self._doubts
         if doubts is None:
-            return Decision(wheel_speeds, cause, action, rla.rla_id, match, answers)
+            return Decision(wheel_speeds, cause, action, rla.rla_id, match, answers, mirrored=rla.mirrored)
         score = doubts.meter.score(situation.vector, match, action, self._behaviour)
         if doubts.update(score, alone=self.skip_withdrawn):
             self._held.stop()
             return Decision(STANDSTILL, DecisionCause.DOUBT, None, None, match, doubt=score)
-        return Decision(wheel_speeds, cause, action, rla.rla_id, match, answers, doubt=score)
+        rla_id, mirrored = rla.rla_id, rla.mirrored
+        return Decision(wheel_speeds, cause, action, rla_id, match, answers, doubt=score, mirrored=mirrored)
 
     def new_obstacle(self, match: Match, vector: NDArray[np.float64]) -> NewObstacle | None:
         """Return the sensor that makes the robot doubt the nearest RLA in a situation (d,); None if no sensor does."""

@@ -15,7 +15,7 @@ from hal.robot_settings import InfraredSettings
 from kurt2rt.core.basic.obstacle_memory import ContactSettings, ObstacleMemory
 from kurt2rt.core.perception.definition import Reading, SituationDefinition
 from kurt2rt.core.rla.active_rlas import Match
-from kurt2rt.core.rla.rla import BASIC, Rla
+from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.settings_fields import or_left_out
 
@@ -136,11 +136,11 @@ class DoubtMeter:
         self._features = features
         self.actions = frozenset(actions)
         """Names of the actions that drive on."""
-        self._rows: dict[int, tuple[float, ...]] = {}
-        """Readings ahead in the condition of each RLA that drives on, by its id."""
+        self._rows: dict[tuple[int, bool], tuple[float, ...]] = {}
+        """Readings ahead in the condition of each RLA that drives on, by its id and whether it is mirrored."""
         self._taught: dict[str, tuple[float, ...]] | None = None
         """Highest taught readings by behaviour; None after the knowledge changed."""
-        self._nearest: int | None = None
+        self._nearest: tuple[int, bool] | None = None
         """Nearest RLA of the last score since a lesson."""
         self._nearest_limits: tuple[float, ...] = ()
 
@@ -157,8 +157,7 @@ class DoubtMeter:
         off = self._share(match) - self._usual
         score = off * self._per_distance if off > 0.0 else 0.0
         if action in self.actions:
-            # In most ticks the nearest RLA is that of the tick before.
-            limits = self._nearest_limits if rla.rla_id == self._nearest else self._limits(rla.rla_id, behaviour)
+            limits = self._limits(rla, behaviour)
             if limits:
                 most = max(map(sub, map(situation.item, self._features), limits))
                 if most > 0.0:
@@ -189,16 +188,17 @@ class DoubtMeter:
         """
         if action not in self.actions:
             return None
-        limits = self._limits(match.rla.rla_id, behaviour)
+        limits = self._limits(match.rla, behaviour)
         found = [NewObstacle(i, situation.item(i), limit) for i, limit in zip(self._features, limits, strict=False)]
         most = max(found, key=lambda each: each.counts, default=None)
         return None if most is None or most.counts <= 0.0 else most
 
-    def _limits(self, nearest: int, behaviour: str) -> tuple[float, ...]:
+    def _limits(self, rla: Rla, behaviour: str) -> tuple[float, ...]:
         """Return the highest taught reading of each sensor ahead; empty before enough lessons.
 
         Readings of the nearest RLA count even if no other lesson has such: an answer ends the doubt that it is about.
         """
+        nearest = rla.rla_id, rla.mirrored
         if self._taught is None:
             self._taught = self._read_lessons()
         if self._nearest != nearest:
@@ -208,11 +208,12 @@ class DoubtMeter:
         return self._nearest_limits
 
     def _read_lessons(self) -> dict[str, tuple[float, ...]]:
-        rows: dict[int, tuple[float, ...]] = {}
+        rows: dict[tuple[int, bool], tuple[float, ...]] = {}
         of: dict[str, list[tuple[float, ...]]] = {}
-        for rla in self._system.active_rlas:
-            if rla.level == BASIC and rla.action in self.actions:
-                row = rows[rla.rla_id] = self._rows.get(rla.rla_id) or self._row(rla)
+        for rla in self._system.matched_rlas:
+            if rla.action in self.actions:
+                key = rla.rla_id, rla.mirrored
+                row = rows[key] = self._rows.get(key) or self._row(rla)
                 of.setdefault(rla.behaviour, []).append(row)
         self._rows = rows
         return {

@@ -117,6 +117,11 @@ class Expectations:
         """Return the expectation of an RLA; None before its first end."""
         return self._learned.get(rla_id)
 
+    def mirrored(self, situation: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the mirror image of a situation (d,) of RLAs that have mirror images."""
+        mirror = self._system.mirror
+        return situation if mirror is None else situation[mirror.order]
+
     def learn(self, end: End) -> Surprise | None:
         """Learn one end of an RLA and return its surprise.
 

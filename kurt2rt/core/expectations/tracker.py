@@ -25,10 +25,13 @@ class BasicTransitionTracker:
     def __init__(self, expectations: Expectations) -> None:
         self.expectations = expectations
         self._driver: int | None = None
+        self._mirrored = False
         self._behaviour = ""
         self._since_tick = 0
 
-    def update(self, tick: int, rla_id: int | None, situation: NDArray[np.float64], behaviour: str) -> Surprise | None:
+    def update(
+        self, tick: int, rla_id: int | None, situation: NDArray[np.float64], behaviour: str, *, mirrored: bool
+    ) -> Surprise | None:
         """Learn the expectation of the RLA that drove before, if another RLA takes over in this tick.
 
         Call this on every tick. After a standstill or a change of behaviour nothing is learned. Returns the surprise of
@@ -39,13 +42,18 @@ class BasicTransitionTracker:
             rla_id: driving RLA; None at standstill.
             situation: situation of this tick, shape (d,).
             behaviour: selected taught behaviour.
+            mirrored: whether the driving RLA answers in its mirror image; then its end is learned from the mirror
+                image of the situation.
         """
+        was_mirrored, self._mirrored = self._mirrored, mirrored
         if rla_id == self._driver:
             return None
         before, since_tick, same = self._driver, self._since_tick, behaviour == self._behaviour
         self._driver, self._since_tick, self._behaviour = rla_id, tick, behaviour
         if before is None or rla_id is None or not same:
             return None
+        if was_mirrored:
+            situation = self.expectations.mirrored(situation)
         return self.expectations.learn(End(before, rla_id, situation, tick - since_tick))
 
     def restart(self) -> None:
@@ -169,7 +177,8 @@ class ExpectationTracker:
             counts: whether the tick counts on the clock of the way, by which the mid level learns how long a way is.
         """
         drove = driving and not slow
-        surprise = self.follow(tick, decision.rla_id if drove else None, situation.vector, behaviour)
+        rla_id = decision.rla_id if drove else None
+        surprise = self.follow(tick, rla_id, situation.vector, behaviour, mirrored=decision.mirrored)
         following, mid, commanded = self._mid_transitions, self._mid, decision.mid
         if following is None or mid is None or commanded is None:
             return surprise
@@ -177,7 +186,9 @@ class ExpectationTracker:
             following.restart()
         return following.update(commanded, mid.vector, driving=driving and counts) or surprise
 
-    def follow(self, tick: int, rla_id: int | None, vector: NDArray[np.float64], behaviour: str) -> Surprise | None:
+    def follow(
+        self, tick: int, rla_id: int | None, vector: NDArray[np.float64], behaviour: str, *, mirrored: bool
+    ) -> Surprise | None:
         """Learn at the basic level from one tick; ticks in which the same RLA drives on may be left out.
 
         Args:
@@ -185,8 +196,9 @@ class ExpectationTracker:
             rla_id: RLA that drove at full speed; None at standstill.
             vector: situation of the basic level, (d,).
             behaviour: active taught behaviour.
+            mirrored: whether the RLA drove in its mirror image.
         """
-        return self._basic.update(tick, rla_id, vector, behaviour)
+        return self._basic.update(tick, rla_id, vector, behaviour, mirrored=mirrored)
 
     def on_event(self, event: TeachingEvent) -> int | None:
         """Drop the expectation of the RLA whose action an applied event changed.

@@ -1,7 +1,7 @@
 """Schema of `config/situations/*.yaml`: the features of a situation, and the hash that knowledge is bound to."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, Literal
 
 import numpy as np
@@ -45,6 +45,10 @@ class Feature(Settings, ABC):
     @abstractmethod
     def bounds(self, top_speed: int) -> tuple[int, int]:
         """Return its lowest and its highest value; `top_speed`: greatest wheel speed times the scale."""
+
+    def measured(self, names: Mapping[str, str]) -> tuple[object, ...]:
+        """Return what it measures, with other `names` for sensors and sides: features of equal tuples are the same."""
+        return (self.kind, *(names[sensor] for sensor in self.sensors_used))
 
     def batch_kind(self, scale: int) -> FeatureKind | None:  # noqa: ARG002 - for wheel speeds
         """Return what a compiled batch computes, by the kind's name; None: the batch refuses the feature."""
@@ -97,6 +101,10 @@ class Extreme(_OfCounts):
         extreme = "max" if self.kind == "maximum" else "min"
         return counts[0] if len(counts) == 1 else f"{extreme}({', '.join(counts)})"
 
+    def measured(self, names: Mapping[str, str]) -> tuple[object, ...]:
+        """Return its kind and the set of its sensors."""
+        return self.kind, frozenset(names[sensor] for sensor in self.sensors)
+
 
 class Orientation(_OfCounts):
     """Difference of two sensors of one heading, 0 if negative: deviation of the wall from parallel."""
@@ -133,6 +141,10 @@ class WheelSpeed(Feature):
     def expression(self, counts: Sequence[str]) -> str:  # noqa: ARG002 - it has none
         """Return the set point, which is scaled already."""
         return "driven[0]" if self.side == "left" else "driven[1]"
+
+    def measured(self, names: Mapping[str, str]) -> tuple[object, ...]:
+        """Return its side."""
+        return self.kind, names[self.side]
 
     def bounds(self, top_speed: int) -> tuple[int, int]:
         """Return the top speed of both directions, at least 1: checkers of Gymnasium warn of equal bounds."""

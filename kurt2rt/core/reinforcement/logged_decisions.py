@@ -77,7 +77,7 @@ class LoggedDecisions(DecisionHistory):
 
     def driving_rla(self, tick: int) -> int | None:
         """Return the id of the RLA that drove in a stored tick; None if none did."""
-        return int(self._log.rlas[tick]) or None
+        return abs(int(self._log.rlas[tick])) or None
 
     def learner_action(self, tick: int) -> str:
         """Return the action by which a learner that is no RLA system drove in a stored tick; empty if none did."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from kurt2rt.core.rla.condition import Condition, Space
 from kurt2rt.core.rla.matching import ConditionIndex, SymbolIndex
+from kurt2rt.core.rla.mirror import Mirror
 from kurt2rt.core.rla.rla import BASIC, Rla
 
 
@@ -37,37 +38,47 @@ class Match(NamedTuple):
 
 
 class CandidateIndex:
-    """Searchable conditions of the RLAs that compete at one level for one behaviour, with their ids."""
+    """Searchable conditions of the RLAs that compete at one level for one behaviour, with their RLAs."""
 
     def __init__(self, space: Space) -> None:
         self.weights = np.ones(space.dimensions) if space.weights is None else space.weights
-        self.ids: list[int] = []
-        """Oldest first."""
+        self.rlas: list[Rla] = []
+        """Oldest first, each before its mirror image."""
         self.index = _make_index(space)
 
-    def add(self, rla_id: int, condition: Condition) -> None:
+    def add(self, rla: Rla) -> None:
         """Insert an RLA in the order of ids. Raises ValueError for a wrong length or a number that is not finite."""
         dimensions = len(self.weights)
-        if len(condition) != dimensions:
-            raise ValueError(f"condition has {len(condition)} values, this system matches {dimensions}")
-        position = bisect_left(self.ids, rla_id)
-        self.index.insert(position, self._weighted(condition))
-        self.ids.insert(position, rla_id)
+        if len(rla.condition) != dimensions:
+            raise ValueError(f"condition has {len(rla.condition)} values, this system matches {dimensions}")
+        position = self._position(rla)
+        self.index.insert(position, self._weighted(rla.condition))
+        self.rlas.insert(position, rla)
 
-    def remove(self, rla_id: int) -> None:
+    def replace(self, rla: Rla) -> None:
+        """Replace the RLA of the same id and condition, which must be in the index."""
+        self.rlas[self._position(rla)] = rla
+
+    def remove(self, rla: Rla) -> None:
         """Remove an RLA, which must be in the index."""
-        position = bisect_left(self.ids, rla_id)
+        position = self._position(rla)
         self.index.remove(position)
-        del self.ids[position]
+        del self.rlas[position]
 
-    def nearest_first(self, condition: Condition) -> list[int]:
-        """Return all ids, nearest to an unweighted condition first; of equally near RLAs the older first."""
-        order = np.argsort(self.index.distances(self._weighted(condition)), kind="stable")
-        return [self.ids[position] for position in order.tolist()]
+    def distances(self, condition: Condition | NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the distance of each RLA, (n,), to an unweighted condition (d,)."""
+        return self.index.distances(self._weighted(condition))
 
-    def _weighted(self, condition: Condition) -> NDArray[np.float64]:
+    def _position(self, rla: Rla) -> int:
+        return bisect_left(self.rlas, _age(rla), key=_age)
+
+    def _weighted(self, condition: Condition | NDArray[np.float64]) -> NDArray[np.float64]:
         weighted: NDArray[np.float64] = np.array(condition, dtype=np.float64) * self.weights
         return weighted
+
+
+def _age(rla: Rla) -> tuple[int, bool]:
+    return rla.rla_id, rla.mirrored
 
 
 def _make_index(space: Space) -> ConditionIndex | SymbolIndex:
@@ -81,9 +92,15 @@ def _make_index(space: Space) -> ConditionIndex | SymbolIndex:
 class ActiveRlas:
     """RLAs of all levels and behaviours. Among those of one level and behaviour the nearest wins."""
 
-    def __init__(self, spaces: Mapping[str, Space]) -> None:
-        """`spaces`: by level; RLAs of other levels are kept, but never matched."""
+    def __init__(self, spaces: Mapping[str, Space], mirror: Mirror | None = None) -> None:
+        """Begin without RLAs.
+
+        Args:
+            spaces: by level; RLAs of other levels are kept, but never matched.
+            mirror: each RLA of the basic level also answers in its mirror image; None: it does not.
+        """
         self._spaces = spaces
+        self.mirror = mirror
         self._rlas: dict[int, Rla] = {}
         self._indexes: dict[tuple[str, str], CandidateIndex] = {}
         """By level and behaviour."""
@@ -128,10 +145,10 @@ class ActiveRlas:
         nearest = None if index is None else index.index.nearest(situation * index.weights)
         if index is None or nearest is None:
             return None
-        rla = self._rlas[index.ids[nearest.position]]
+        rla = index.rlas[nearest.position]
         if not include_withdrawn and self.passes_over(rla):
             return self._match_of_others(index, situation)
-        runner_up = self._rlas[index.ids[nearest.runner_up]] if nearest.runner_up >= 0 else None
+        runner_up = index.rlas[nearest.runner_up] if nearest.runner_up >= 0 else None
         radius = self.radius_of(rla)
         if math.isnan(nearest.distance):
             return Match(rla, math.inf, radius, runner_up, math.inf)
@@ -154,25 +171,25 @@ class ActiveRlas:
         """Return the nearest RLA that is not passed over. Computes all distances: rare, so not optimised."""
         distances = index.index.distances(situation * index.weights)
         order = np.argsort(distances, kind="stable").tolist()  # stable: the older of equally near RLAs comes first
-        found = list(islice((place for place in order if not self.passes_over(self._rlas[index.ids[place]])), 2))
+        found = list(islice((place for place in order if not self.passes_over(index.rlas[place])), 2))
         if not found:
             return None
-        rla = self._rlas[index.ids[found[0]]]
+        rla = index.rlas[found[0]]
         radius = self.radius_of(rla)
         if len(found) == 1:
             return Match(rla, float(distances[found[0]]), radius, None, math.inf)
-        runner_up = self._rlas[index.ids[found[1]]]
+        runner_up = index.rlas[found[1]]
         return Match(rla, float(distances[found[0]]), radius, runner_up, float(distances[found[1]]))
 
     def nearest_first(
         self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC, *, limit: int | None = None
-    ) -> tuple[tuple[int, float], ...]:
-        """Return (id, distance) of the RLAs of a level and behaviour, nearest to a situation (d,) first.
+    ) -> tuple[tuple[Rla, float], ...]:
+        """Return (RLA, distance) of the RLAs of a level and behaviour, nearest to a situation (d,) first.
 
         Computes all distances: for explanations, not for each tick. `limit`: largest number of RLAs; None: all.
         """
         index = self._indexes.get((level, behaviour))
-        if index is None or not index.ids:
+        if index is None or not index.rlas:
             return ()
         distances = index.index.distances(situation * index.weights)
         if limit is None or limit >= len(distances):
@@ -183,24 +200,43 @@ class ActiveRlas:
             near = np.flatnonzero((distances <= farthest) | np.isnan(farthest))
             order = near[np.argsort(distances[near], kind="stable")][:limit].tolist()
         return tuple(
-            (index.ids[place], math.inf if math.isnan(distances[place]) else float(distances[place])) for place in order
+            (index.rlas[place], math.inf if math.isnan(distances[place]) else float(distances[place]))
+            for place in order
         )
 
     def candidate_count(self, behaviour: str = "", level: str = BASIC) -> int:
-        """Return the number of RLAs that compete at a level for a behaviour."""
+        """Return the number of RLAs, mirror images included, that compete at a level for a behaviour."""
         index = self._indexes.get((level, behaviour))
-        return 0 if index is None else len(index.ids)
+        return 0 if index is None else len(index.rlas)
+
+    def candidates(self, behaviour: str = "") -> tuple[Rla, ...]:
+        """Return the RLAs of the basic level that compete for a behaviour, mirror images included, oldest first."""
+        index = self._indexes.get((BASIC, behaviour))
+        return () if index is None else tuple(index.rlas)
+
+    @property
+    def matched_rlas(self) -> tuple[Rla, ...]:
+        """All RLAs of the basic level that are matched, of all behaviours, mirror images included."""
+        return tuple(rla for (level, _), index in self._indexes.items() if level == BASIC for rla in index.rlas)
 
     def competitors(self, rla: Rla) -> tuple[Rla, ...]:
         """Return the RLAs of its level and behaviour with an equal condition, itself included, oldest first."""
-        return self._groups.for_rla(rla)
+        group = self._groups.for_rla(rla)
+        if not rla.mirrored:
+            return group
+        return (rla,) if len(group) == 1 else tuple(map(self.mirror_image, group))
+
+    def as_taught(self, rla: Rla, action: str) -> str:
+        """Return the action of an RLA that makes a matched one, which may be a mirror image, have `action`."""
+        return self.mirror.name(action) if self.mirror is not None and rla.mirrored else action
 
     def neighbours(self, rla: Rla, count: int) -> tuple[Rla, ...]:
         """Return at most `count` RLAs of its level and behaviour with another condition, nearest first; sorts all."""
         index = self._indexes.get((rla.level, rla.behaviour))
         if index is None:
             return ()
-        others = (self._rlas[rla_id] for rla_id in index.nearest_first(rla.condition))
+        order = np.argsort(index.distances(rla.condition), kind="stable").tolist()
+        others = (index.rlas[place] for place in order)
         return tuple(islice((other for other in others if other.condition != rla.condition), count))
 
     def _oldest_first(self) -> Iterator[Rla]:
@@ -210,24 +246,41 @@ class ActiveRlas:
         """Add an RLA. Raises ValueError, changing nothing, if its condition cannot be matched."""
         space = self._spaces.get(rla.level)
         if space is not None:
-            index = self._indexes.get((rla.level, rla.behaviour)) or CandidateIndex(space)
-            index.add(rla.rla_id, rla.condition)
-            self._indexes[rla.level, rla.behaviour] = index
-        self._replace(rla)
+            for each in self._images(rla):
+                index = self._indexes.get((rla.level, each.behaviour)) or CandidateIndex(space)
+                index.add(each)
+                self._indexes[rla.level, each.behaviour] = index
+        self._keep(rla)
         self._counts[rla.level] += 1
 
     def _replace(self, rla: Rla) -> None:
         """Replace the active RLA that has the id and the condition of `rla`."""
-        self._rlas[rla.rla_id] = rla
-        self._groups.add_or_replace(rla)
+        if rla.level in self._spaces:
+            for each in self._images(rla):
+                self._indexes[rla.level, each.behaviour].replace(each)
+        self._keep(rla)
 
     def _remove(self, rla: Rla) -> Rla:
         """Remove an active RLA and return it. Raises KeyError if none has its id."""
         if rla.level in self._spaces:
-            self._indexes[rla.level, rla.behaviour].remove(rla.rla_id)
+            for each in self._images(rla):
+                self._indexes[rla.level, each.behaviour].remove(each)
         self._groups.remove(rla)
         self._counts[rla.level] -= 1
         return self._rlas.pop(rla.rla_id)
+
+    def _keep(self, rla: Rla) -> None:
+        self._rlas[rla.rla_id] = rla
+        self._groups.add_or_replace(rla)
+
+    def _images(self, rla: Rla) -> tuple[Rla, ...]:
+        """Return what of an RLA is matched: itself, and its mirror image."""
+        return (rla,) if self.mirror is None or rla.level != BASIC else (rla, self.mirror_image(rla))
+
+    def mirror_image(self, rla: Rla) -> Rla:
+        """Return the mirror image of an RLA of a system that has a mirror."""
+        assert self.mirror is not None
+        return self.mirror.rla(rla)
 
 
 class CompetitorGroups:

@@ -54,9 +54,8 @@ def find_contradiction(
     limit = _LOOKED_AT if hold is None else _LOOKED_AT_OTHER_PRESSES
     near = system.nearest_first(np.array(rla.condition), rla.behaviour, limit=limit)
     neighbours: list[Rla] = []
-    for rla_id, _ in near:
-        other = system.get(rla_id)
-        if other is None or rla_id == rla.rla_id or other.is_withdrawn:
+    for other, _ in near:
+        if other.rla_id == rla.rla_id or other.is_withdrawn:
             continue
         if hold is not None and hold_of(other.origin.command_id) == hold:
             continue

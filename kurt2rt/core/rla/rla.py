@@ -49,10 +49,11 @@ class Origin:
     """Tick of the run in which the command was applied."""
 
 
-def rla_title(rla_id: int, behaviour: str, level: str = BASIC) -> str:
-    """Return the name of an RLA in texts: RLA 17, RLA 17 of turn_left, mid-level RLA 12."""
+def rla_title(rla_id: int, behaviour: str, level: str = BASIC, *, mirrored: bool = False) -> str:
+    """Return the name of an RLA in texts: RLA 17, RLA 17 of turn_left, mid-level RLA 12, RLA 17 mirrored."""
     kind = {BASIC: "RLA", MID: "mid-level RLA", CRITIC: "appraisal RLA"}.get(level, f"{level} RLA")
-    return f"{kind} {rla_id} of {behaviour}" if behaviour else f"{kind} {rla_id}"
+    image = " mirrored" if mirrored else ""
+    return f"{kind} {rla_id}{image} of {behaviour}" if behaviour else f"{kind} {rla_id}{image}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,14 +78,16 @@ class Rla:
     """Taught behaviour that it belongs to: it answers only while that is active. Empty if the task has only one."""
     level: str = BASIC
     """Level of its condition and action."""
+    mirrored: bool = False
+    """Whether this is the mirror image of the RLA of this id, as a match returns it (`Mirror`); never stored."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "condition", pack_condition(self.condition))
 
     @property
     def title(self) -> str:
-        """Name of the RLA in texts: RLA 17, RLA 17 of turn_left, mid-level RLA 12."""
-        return rla_title(self.rla_id, self.behaviour, self.level)
+        """Name of the RLA in texts: RLA 17, RLA 17 of turn_left, mid-level RLA 12, RLA 17 mirrored."""
+        return rla_title(self.rla_id, self.behaviour, self.level, mirrored=self.mirrored)
 
     @property
     def is_withdrawn(self) -> bool:

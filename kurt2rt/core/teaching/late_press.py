@@ -20,7 +20,7 @@ HAND_PART = 4
 Chosen on wall following, seeds 900 and 901, by an ordinary person with a hand of 0.3 s who answers after 1.25 s:
 held lessons put back by 0, 0.3, 0.6 and 1.25 s passed 0 of 6, 4 of 6, 3 of 6 and 0 of 3 exams.
 """
-CORRECTION_PART = 0.75
+CORRECTION_PART = 0.6
 """Delay of a correction from the moment in which its mistake was noticed, as a fraction of that of an answer.
 
 A person who watches and sees a mistake knows the right action already. Chosen by the tests on search seeds that

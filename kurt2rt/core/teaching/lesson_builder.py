@@ -272,7 +272,8 @@ class LessonBuilder:
         return LessonResult(outcome, RlaCreated(rla))
 
     def _replace(self, rla: Rla, action: str, origin: Origin) -> LessonResult:
-        event = ActionReplaced(rla.rla_id, action, rla.action, origin)
+        taught, instead_of = self._system.as_taught(rla, action), self._system.as_taught(rla, rla.action)
+        event = ActionReplaced(rla.rla_id, taught, instead_of, origin)
         if rla.is_withdrawn:
             return LessonResult(rla_outcome(ResultCode.RLA_ANSWERED, rla, action=action), event)
         return LessonResult(rla_outcome(ResultCode.RLA_CORRECTED, rla, action=action, was=rla.action), event)

@@ -52,6 +52,8 @@ class Question:
     """Question of a robot at a bumper; empty for an unknown situation."""
     doubts: bool = False
     """True if the situation is known, but the robot doubts the action."""
+    mirrored: bool = False
+    """True if the nearest RLA is near as its mirror image, which `action` is of."""
 
     def __str__(self) -> str:
         if self.nearest_rla is None:
@@ -62,7 +64,7 @@ class Question:
             for each in self.differing
             if self.words.differs(each.name, each.here, each.in_condition)
         )
-        nearest = rla_title(self.nearest_rla, self.behaviour)
+        nearest = rla_title(self.nearest_rla, self.behaviour, mirrored=self.mirrored)
         if self.touches:
             return f"{self.touches} {nearest} says {self.action}"
         if self.doubts:
@@ -147,7 +149,10 @@ def ask(
         for i in order
         if differences[i] > 0.0
     )
-    return Question(match.rla.rla_id, match.rla.action, match.distance, match.radius, differing, behaviour, words)
+    rla = match.rla
+    return Question(
+        rla.rla_id, rla.action, match.distance, match.radius, differing, behaviour, words, mirrored=rla.mirrored
+    )
 
 
 def ask_in_doubt(question: Question, obstacle: NewObstacle | None, feature_names: tuple[str, ...]) -> Question:

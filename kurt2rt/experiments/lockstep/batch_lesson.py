@@ -128,7 +128,7 @@ class BatchTrainingRun(TrainingRun):
     def drive_stretches(self) -> bool:
         """Teach all phases of the plan; return False, with an unfinished result, if the robot leaves the batch."""
         self._command_behaviour(self.runtime.active_behaviour.behaviour)
-        while self.ticks < self._planned_ticks:
+        while self.ticks < self._planned_ticks and not self._is_right:
             if not self._drive_stretch():
                 return False
         self._mind.count(self.ticks)
@@ -197,6 +197,8 @@ class BatchTrainingRun(TrainingRun):
         ends = [begin + _STRETCH_TICKS, self._planned_ticks, *self._phase_starts_after(begin)]
         if self._reposition_every:
             ends.append((begin // self._reposition_every + 1) * self._reposition_every)
+        if self._clean_ticks is not None and self._unclean_at + self._clean_ticks > begin:
+            ends.append(self._unclean_at + self._clean_ticks)
         arrives = self._teacher.command_due
         if arrives is not None and not self._mind.holds:
             ends.append(max(begin + 1, arrives))
@@ -261,6 +263,7 @@ class BatchTrainingRun(TrainingRun):
             if not isinstance(command, HoldAction) or not self._mind.renews(command):
                 self._send_lesson(command, tick)
                 break
+            self._note_unclean(tick)
             self._workload.count(tick, command)
             self._messages.append((tick + 1, command))
             until = min(last, self._mind.held_to_by(command, tick + 1))
@@ -283,6 +286,9 @@ class BatchTrainingRun(TrainingRun):
     def _pass(self, begin: int, cut: int, poses: list[Pose]) -> None:
         """Measure the ticks up to `cut` as `after_tick` does one by one, and look after the robot in the last one."""
         asks = self.robot.log.causes[begin + 1 : cut + 1] == _UNKNOWN
+        unclean = np.flatnonzero(asks | self.robot.log.touching[begin + 1 : cut + 1])
+        if len(unclean):
+            self._note_unclean(begin + 1 + int(unclean[-1]))
         self.ticks = cut
         self.unknown_ticks += int(asks.sum())
         if self.question.is_open or asks.any():

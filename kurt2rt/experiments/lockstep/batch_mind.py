@@ -229,17 +229,16 @@ def _taught_mind(runtime: Runtime, settings: RobotSettings, task: TaskSettings) 
     level, definition = runtime.level, runtime.definition
     system, features = level.system, feature_table(definition, settings, level.system.weights, task)
     values = len(features.weights) + len(features.average_weights)
-    known = [rla for rla in system.rlas if not system.passes_over(rla)]
-    rlas = [rla for behaviour in task.behaviours for rla in known if rla.behaviour == behaviour]
-    place = {rla.rla_id: index for index, rla in enumerate(rlas)}
+    known = [[rla for rla in system.candidates(each) if not system.passes_over(rla)] for each in task.behaviours]
+    rlas = [rla for each in known for rla in each]
+    place = {(rla.rla_id, rla.mirrored): index for index, rla in enumerate(rlas)}
     groups = [system.competitors(rla) for rla in rlas]
-    answers = [
-        place[level.would_answer(group).rla_id] if len(group) > 1 else index for index, group in enumerate(groups)
-    ]
+    would_answer = [level.would_answer(group) for group in groups]
+    answers = [place[rla.rla_id, rla.mirrored] for rla in would_answer]
     conditions = [(np.array(rla.condition, dtype=np.float64) * system.weights)[:values].tolist() for rla in rlas]
     return TaughtMind(
-        sizes=tuple(sum(rla.behaviour == behaviour for rla in rlas) for behaviour in task.behaviours),
-        rla_ids=tuple(place),
+        sizes=tuple(map(len, known)),
+        rla_ids=tuple(rla.rla_id for rla in rlas),
         conditions=conditions,
         radii=tuple(system.whole_radius(rla) for rla in rlas),
         answers=tuple(answers),

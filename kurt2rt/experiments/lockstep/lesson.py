@@ -192,6 +192,9 @@ class TrainingRun(Episode):
         self._shown_ticks = round(plan.shown_s / period_s)
         self._planned_ticks = round(plan.duration_s / period_s)
         self._phase_starts = _phase_starts(plan, period_s)
+        self._clean_ticks = None if plan.clean_drive_s is None else round(plan.clean_drive_s / period_s)
+        self._unclean_at = max(self._phase_starts, default=0)
+        """Last tick with a press, a question, a touch or a rescue, or before the last phase."""
         self._workload = TeacherWorkload(self._planned_ticks, period_s)
         self._growth: list[int] = []
         self._labels: list[tuple[Label, ...]] = []
@@ -227,9 +230,19 @@ class TrainingRun(Episode):
         self._look_after(record.tick)
         self._command_behaviour(record.behaviour)
         self._note_labels()
+        if self._clean_ticks is not None and (self.asking or self.simulation.touching):
+            self._note_unclean(record.tick)
         most = self._plan.most_presses
-        if most is not None and self.presses > most:
-            self.runtime.scheduler.end()  # the press waits in the inbox, which no further tick reads
+        if self._is_right or (most is not None and self.presses > most):
+            self.runtime.scheduler.end()  # a press waits in the inbox, which no further tick reads
+
+    @property
+    def _is_right(self) -> bool:
+        """Return whether the robot has driven for so long without help that the lesson may end."""
+        return self._clean_ticks is not None and self.ticks - self._unclean_at >= self._clean_ticks
+
+    def _note_unclean(self, tick: int) -> None:
+        self._unclean_at = max(self._unclean_at, tick)
 
     def on_second(self, record: TickRecord) -> None:
         """Record the growth of the RLA system and the agreement of the critic."""
@@ -319,6 +332,7 @@ class TrainingRun(Episode):
 
     def _send_lesson(self, command: Command, tick: int) -> None:
         self.send(command)
+        self._note_unclean(tick)
         self._workload.count(tick, command)
         self._deletions += isinstance(command, DeleteRla)
         if isinstance(command, Reward):
@@ -355,6 +369,7 @@ class TrainingRun(Episode):
 
     def _rescue(self, tick: int) -> None:
         self.rescue()
+        self._note_unclean(tick)
         self._workload.count_manual(tick, "rescued")
         self._rescues += 1
 

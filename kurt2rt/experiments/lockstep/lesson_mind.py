@@ -48,8 +48,8 @@ class LessonMind:
         width, weights = len(runtime.definition.features), runtime.level.system.weights
         self._values = len(weights) if weights[width:].any() else width
         """Values of a situation that the robot compares."""
-        self._conditions: dict[int, NDArray[np.float64]] = {}
-        """Weighted features of each RLA that was created."""
+        self._conditions: dict[tuple[int, bool], NDArray[np.float64]] = {}
+        """Weighted features of each RLA that was created, and of its mirror image."""
         self._known = 0
         """Newest tick that was counted."""
         self._decided = 0
@@ -193,16 +193,16 @@ class LessonMind:
 
     def _taught_rlas(self) -> TaughtRlas:
         system, values = self.runtime.level.system, self._values
-        rlas = [rla for rla in system.rlas if rla.behaviour == self._behaviour]
+        rlas = system.candidates(self._behaviour)
         if any(len(system.competitors(rla)) > 1 for rla in rlas):
             raise refused(self.runtime.task, "RLAs on one condition, among which a choice is drawn")
         for rla in rlas:
-            if rla.rla_id not in self._conditions:
+            if (rla.rla_id, rla.mirrored) not in self._conditions:
                 weighted = np.array(rla.condition, dtype=np.float64) * system.weights
-                self._conditions[rla.rla_id] = weighted[:values]
+                self._conditions[rla.rla_id, rla.mirrored] = weighted[:values]
         return TaughtRlas(
-            [rla.rla_id for rla in rlas],
-            [self._conditions[rla.rla_id] for rla in rlas],
+            [-rla.rla_id if rla.mirrored else rla.rla_id for rla in rlas],
+            [self._conditions[rla.rla_id, rla.mirrored] for rla in rlas],
             [system.radius_of(rla) for rla in rlas],
             [rla.action for rla in rlas],
         )
@@ -238,10 +238,10 @@ class LessonMind:
         ticks.update(tick + after for tick, _ in self._events for after in (0, 1) if tick + after <= last)
         for tick in sorted(ticks):
             place = tick - first
-            expected = int(at_full_speed[place + 1]) or None
+            drove, expected = int(driving[place + 1]), abs(int(at_full_speed[place + 1])) or None
             vector, behaviour = self._recent.situation(tick), self._recent.behaviour(tick)
-            runtime.expectations.follow(tick, expected, vector, behaviour)
-            runtime.statistics.count(int(driving[place + 1]) or None)
+            runtime.expectations.follow(tick, expected, vector, behaviour, mirrored=drove < 0)
+            runtime.statistics.count(abs(drove) or None)
             while self._events and self._events[0][0] == tick:
                 self._drop_counts(self._events.popleft()[1])
 

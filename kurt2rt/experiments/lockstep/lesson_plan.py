@@ -53,6 +53,9 @@ class LessonPlan:
     """So often of the times that it is set down."""
     rescues_who_asks: bool = False
     """True if the time of the stuck detector continues after a question."""
+    clean_drive_s: float | None = None
+    """The run ends sooner, after so long a drive in the last phase without press, question, touch or rescue; None: it
+    lasts for all of its time."""
     most_presses: int | None = None
     """Number of presses after which the next one ends the run and teaches nothing; None: no limit."""
 
@@ -70,5 +73,7 @@ class LessonPlan:
 def plan_of(task: TaskSettings) -> LessonPlan:
     """Return the plan of the task: phases 1 and 2, without phases of 0 s."""
     teaching = task.teaching
-    phases = ((Phase.SUPERVISED, teaching.supervised_s), (Phase.CORRECTIONS, teaching.corrections_s))
-    return LessonPlan(tuple(each for each in phases if each[1]) or phases[:1])
+    corrections_s = teaching.duration_s - teaching.supervised_s
+    phases = ((Phase.SUPERVISED, teaching.supervised_s), (Phase.CORRECTIONS, corrections_s))
+    clean_drive_s = teaching.clean_drive_s if teaching.until_right else None
+    return LessonPlan(tuple(each for each in phases if each[1]) or phases[:1], clean_drive_s=clean_drive_s)

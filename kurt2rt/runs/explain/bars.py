@@ -36,7 +36,7 @@ def draw_nearness(axes: Axes, level: LevelFacts, rla: RlaFacts | None, colours: 
         colour = ASKS if each.asks else colours.get(each.action, STANDS)
         edge, size = (INK, 14) if each is rla else ("white", 7)
         axes.plot(each.distance, 0, "o", markersize=size, color=colour, markeredgecolor=edge)
-    named = {each.rla_id: each for each in (rla, nearest, level.runner_up, level.otherwise) if each is not None}
+    named = {each.name: each for each in (rla, nearest, level.runner_up, level.otherwise) if each is not None}
     for row, each in enumerate(named.values()):
         axes.annotate(
             f"{format_rla(each)}: {format_distance(each.distance)}",

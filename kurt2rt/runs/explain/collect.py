@@ -156,6 +156,10 @@ class _LevelSituation(NamedTuple):
     euclidean: bool = True
 
 
+def _key(rla: Rla) -> tuple[int, bool]:
+    return rla.rla_id, rla.mirrored
+
+
 class _Reader:
     """Lookup of levels and RLAs in one runtime."""
 
@@ -173,7 +177,10 @@ class _Reader:
         if decision.asks_at != BASIC:
             match = system.match(vector, record.behaviour, include_withdrawn=asking)
         situation = _LevelSituation(self._runtime.definition.names, vector, system.weights)
-        return self._level(BASIC, record.behaviour, situation, match, decision.rla_id)
+        driver = self._system.get(decision.rla_id or 0)
+        if driver is not None and decision.mirrored:
+            driver = system.mirror_image(driver)
+        return self._level(BASIC, record.behaviour, situation, match, driver)
 
     def mid(self, decision: MidDecision) -> LevelFacts | None:
         mid = self._runtime.mid
@@ -182,7 +189,7 @@ class _Reader:
         space, vector = mid.settings.space, mid.vector
         weights = np.ones(space.dimensions) if space.weights is None else space.weights
         situation = _LevelSituation(mid.settings.features, vector, weights, euclidean=space.metric == "euclidean")
-        facts = self._level(MID, "", situation, decision.match, decision.rla_id)
+        facts = self._level(MID, "", situation, decision.match, self._system.get(decision.rla_id or 0))
         words = mid.settings.situation.describe
         there = () if facts.nearest is None else words(facts.nearest.condition)
         return replace(facts, words=words(vector), nearest_words=there)
@@ -193,15 +200,14 @@ class _Reader:
         behaviour: str,
         situation: _LevelSituation,
         match: Match | None,
-        driver_id: int | None,
+        driver: Rla | None,
     ) -> LevelFacts:
-        ranking = self._ranking(level_name, behaviour, situation.vector, driver_id)
-        ranked = [(rla, distance) for rla_id, distance in ranking if (rla := self._system.get(rla_id)) is not None]
-        match_id = None if match is None else match.rla.rla_id
-        nearer = takewhile(lambda each: each[0].rla_id != match_id, () if match is None else ranked)
+        ranking = self._ranking(level_name, behaviour, situation.vector, driver)
+        distances = {_key(rla): distance for rla, distance in ranking}
+        matched = None if match is None else _key(match.rla)
+        nearer = takewhile(lambda each: _key(each[0]) != matched, () if match is None else ranking)
         passed_over = (self._rla_facts(*each) for each in nearer if self._passes_over(each[0], level_name))
-        others = (each for each in ranked if each[0].rla_id != match_id and not self._passes_over(each[0], level_name))
-        driver = None if driver_id is None else self._system.get(driver_id)
+        others = (each for each in ranking if _key(each[0]) != matched and not self._passes_over(each[0], level_name))
         return LevelFacts(
             level=level_name,
             behaviour=behaviour,
@@ -210,7 +216,7 @@ class _Reader:
             weights=tuple(situation.weights.tolist()),
             euclidean=situation.euclidean,
             nearest=None if match is None else self._rla_facts(match.rla, match.distance, match.radius),
-            driver=None if driver is None else self._rla_facts(driver, dict(ranking).get(driver.rla_id, math.inf)),
+            driver=None if driver is None else self._rla_facts(driver, distances.get(_key(driver), math.inf)),
             others=tuple(self._rla_facts(*each) for each in islice(others, self._most)),
             count=self._system.candidate_count(behaviour, level_name),
             radius_share=self._system.radius_share if level_name == BASIC else 1.0,
@@ -222,15 +228,14 @@ class _Reader:
         return level_name == BASIC and self._runtime.level.skip_withdrawn and self._system.passes_over(rla)
 
     def _ranking(
-        self, level_name: str, behaviour: str, vector: NDArray[np.float64], driver_id: int | None
-    ) -> tuple[tuple[int, float], ...]:
+        self, level_name: str, behaviour: str, vector: NDArray[np.float64], driver: Rla | None
+    ) -> tuple[tuple[Rla, float], ...]:
         """Return the nearest RLAs; all of them if the driver is not among the nearest."""
         if self._most is not None:
             ranking = self._system.nearest_first(vector, behaviour, level_name, limit=self._most + 1 + _PASSED_OVER)
-            ids = {rla_id for rla_id, _ in ranking}
-            rlas = [self._system.get(rla_id) for rla_id in ids]
-            speak = sum(rla is not None and not self._system.passes_over(rla) for rla in rlas)
-            if (driver_id is None or driver_id in ids) and speak > self._most:
+            speak = sum(not self._system.passes_over(rla) for rla, _ in ranking)
+            shown = driver is None or any(_key(rla) == _key(driver) for rla, _ in ranking)
+            if shown and speak > self._most:
                 return ranking
         return self._system.nearest_first(vector, behaviour, level_name)
 
@@ -259,6 +264,7 @@ class _Reader:
             value=float(self._runtime.reinforcement.value(rla.rla_id)) if rewarded else None,
             asks=rla.is_withdrawn,
             leads=self._leads(rla),
+            mirrored=rla.mirrored,
         )
 
     def _leads(self, rla: Rla) -> bool:

@@ -60,6 +60,13 @@ class RlaFacts:
     """True if its action was withdrawn."""
     leads: Truth = True
     """True if it is the one that answers among the RLAs on its condition."""
+    mirrored: Truth = False
+    """True if it is compared as its mirror image, by which its action and condition are told."""
+
+    @property
+    def name(self) -> str:
+        """Return its short name for columns: RLA 17, or RLA 17 mirrored."""
+        return f"RLA {self.rla_id} mirrored" if self.mirrored else f"RLA {self.rla_id}"
 
 
 @dataclass(frozen=True, slots=True)

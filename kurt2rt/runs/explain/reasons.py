@@ -121,7 +121,7 @@ def _rla_drives(level: LevelFacts) -> list[str]:
     nearest, driver = level.nearest, level.driver
     if nearest is None:
         return ["What drove is not among the RLAs any more."]
-    if driver is None or driver.rla_id == nearest.rla_id:
+    if driver is None or driver.name == nearest.name:
         return [f"This is like {nearest.title}, which says {nearest.action}: distance {format_nearness(nearest)}."]
     worth = "" if driver.value is None else f" and has the value {driver.value:.2f}"
     return [

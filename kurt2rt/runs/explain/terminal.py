@@ -70,10 +70,10 @@ def _differences(level: LevelFacts, rla: RlaFacts, words: SensorWords) -> Render
     theirs = {} if other is None else dict(zip(level.names, other.condition, strict=True))
     table = TextTable("feature")
     table.add_column("here", number=True)
-    table.add_column(f"RLA {rla.rla_id}", number=True)
+    table.add_column(rla.name, number=True)
     table.add_column("of the distance")
     if other is not None:
-        table.add_column(f"RLA {other.rla_id}", number=True)
+        table.add_column(other.name, number=True)
         table.add_column("speaks for")
     for share in found[:_FEATURES]:
         cells: list[str | Text] = [
@@ -87,7 +87,7 @@ def _differences(level: LevelFacts, rla: RlaFacts, words: SensorWords) -> Render
             side = rla if of_feature > 0 else other
             cells += [
                 words.reading(share.name, theirs[share.name]),
-                "" if abs(of_feature) < 0.005 else f"{ahead} for RLA {side.rla_id}",
+                "" if abs(of_feature) < 0.005 else f"{ahead} for {side.name}",
             ]
         table.add_row(*cells)
     hidden = len(found) - table.row_count

@@ -24,6 +24,10 @@ class MatchEntry(NamedTuple):
     known: bool
     runner_up: int | None
     runner_up_distance: float
+    mirrored: bool | None = None
+    """True if the nearest RLA was near as its mirror image; None if not."""
+    runner_up_mirrored: bool | None = None
+    """The same of the runner-up."""
 
 
 class MidEntry(NamedTuple):
@@ -51,6 +55,8 @@ class DecisionEntry(NamedTuple):
     plan: PlanStep | None
     doubt: float | None
     """None if the task sets no doubt."""
+    mirrored: bool | None = None
+    """True if the RLA that drives drove as its mirror image; None if not."""
 
 
 class OpinionEntry(NamedTuple):
@@ -142,15 +148,25 @@ def decision_entry(decision: Decision) -> DecisionEntry:
     """Return a decision with ids instead of RLAs."""
     mid = decision.mid
     told = None if mid is None else MidEntry._make(mid)._replace(match=match_entry(mid.match))
-    return DecisionEntry._make(decision)._replace(match=match_entry(decision.match), mid=told)
+    mirrored = decision.mirrored or None
+    return DecisionEntry._make(decision)._replace(match=match_entry(decision.match), mid=told, mirrored=mirrored)
 
 
 def match_entry(match: Match | None) -> MatchEntry | None:
     """Return a match with ids instead of RLAs; None for None."""
     if match is None:
         return None
-    runner_up = None if match.runner_up is None else match.runner_up.rla_id
-    return MatchEntry(match.rla.rla_id, match.distance, match.radius, match.known, runner_up, match.runner_up_distance)
+    rla, other = match.rla, match.runner_up
+    return MatchEntry(
+        rla_id=rla.rla_id,
+        distance=match.distance,
+        radius=match.radius,
+        known=match.known,
+        runner_up=None if other is None else other.rla_id,
+        runner_up_distance=match.runner_up_distance,
+        mirrored=rla.mirrored or None,
+        runner_up_mirrored=None if other is None else other.mirrored or None,
+    )
 
 
 def _opinion_entry(opinion: Opinion) -> OpinionEntry:

@@ -70,7 +70,7 @@ class CounterfactualPolicy:
                 task = run.task
                 definition = load_situation(task.situation, run.robot.infrared.names)
                 mid = None if task.mid is None else load_mid_level(task.mid)
-                self._system = empty_system(task, definition, load_critic(task.critic), mid)
+                self._system = empty_system(run.robot, task, definition, load_critic(task.critic), mid)
             recent = DecisionHistory(definition.dimensions)
             self._worths = Reinforcement(self._system, recent, task.reinforcement, run.robot.cycle_s)
             self._worths.restore(tuple(events), statistics)

@@ -208,10 +208,10 @@ def test_nearest_first_limit_is_a_prefix(most: int) -> None:
     system = system_of(*(created(place, (at, 0.0)) for place, at in enumerate(places, start=1)))
     assert system.candidate_count() == len(places)
     whole = system.nearest_first(np.array([0.0, 0.0]))
-    assert [rla_id for rla_id, _ in whole] == [3, 6, 7, 1, 2, 5, 8, 4]
+    assert [rla.rla_id for rla, _ in whole] == [3, 6, 7, 1, 2, 5, 8, 4]
     assert system.nearest_first(np.array([0.0, 0.0]), limit=most) == whole[:most]
     lost = system.nearest_first(np.array([math.nan, 0.0]), limit=most)
-    assert lost == tuple((rla_id, math.inf) for rla_id in range(1, 9))[:most]
+    assert lost == tuple((rla, math.inf) for rla in system.rlas)[:most]
 
 
 def around(system: RlaSystem, rla_id: int, count: int) -> list[int]:

@@ -40,7 +40,10 @@ readings = some.builds(
 grants = some.builds(
     GuardResult, wheels, some.lists(some.sampled_from(GuardReason), max_size=2).map(tuple), some.booleans()
 )
-matches = some.builds(MatchEntry, some.integers(1), number, number, some.booleans(), maybe_id, number)
+or_absent = some.sampled_from((True, None))
+matches = some.builds(
+    MatchEntry, some.integers(1), number, number, some.booleans(), maybe_id, number, or_absent, or_absent
+)
 junctions = some.builds(JunctionEvent, some.integers(-1, 2), some.booleans(), some.booleans(), number, number)
 mids = some.builds(
     MidEntry, text, maybe_id, some.none() | matches, some.booleans(), some.booleans(), some.none() | junctions
@@ -60,6 +63,7 @@ decisions = some.builds(
     some.none() | mids,
     some.none() | plans,
     some.sampled_from((None, float("inf"))) | number,
+    or_absent,
 )
 opinions = some.builds(OpinionEntry, some.integers(-1, 1), text, number, maybe_id, number, number, some.booleans())
 surprises = some.builds(
@@ -92,7 +96,7 @@ events = (
     some.builds(RlaCreated, rlas)
     | some.builds(LessonUndone, text, origins)
     | some.builds(
-        RlaRewarded, some.integers(1), some.sampled_from((1, -1)), some.integers(0), origins, credits_, some.none()
+        RlaRewarded, some.integers(1), some.sampled_from((1, -1)), some.integers(0, 2**40), origins, credits_, some.none()
     )
 )
 entries = some.builds(

@@ -66,6 +66,14 @@ def test_lesson_with_collisions_is_equal_in_the_batch() -> None:
     assert not IS_COMPILED or result.counts.repositions
 
 
+def test_lesson_until_right_ends_in_the_batch_as_on_the_bus() -> None:
+    clean = {"teaching.until_right": "true", "teaching.clean_drive_s": "2.5"}
+    task = lesson_task("circle", "ordinary", clean | {"teaching.corrections_s": "28"} if IS_COMPILED else clean)
+    counts = equal_lesson(task, 1).result.counts
+    assert not IS_COMPILED or counts.presses
+    assert not IS_COMPILED or task.teaching.supervised_s + 2.5 <= counts.teaching_s < task.teaching.duration_s
+
+
 def test_stuck_robot_is_rescued_in_the_batch_as_on_the_bus() -> None:
     task = lesson_task("fleeing", "superhuman", BLIND_TEACHER | {"teaching.rescue_after_s": "2"})
     assert not IS_COMPILED or equal_lesson(task, 1).result.counts.rescues

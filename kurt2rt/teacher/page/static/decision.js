@@ -28,6 +28,15 @@ function taught(state) {
   return parts.length ? `, taught ${parts.join(", ")}` : "";
 }
 
+// RLA 17, or RLA 17 mirrored: the RLA answers on the other side than it was taught.
+function driver({ rla, mirrored }) {
+  return `RLA ${rla}${mirrored ? " mirrored" : ""}`;
+}
+
+function nearest({ nearest: rla, nearest_mirrored: mirrored }) {
+  return driver({ rla, mirrored });
+}
+
 // Returns whether the robot's own text says why it stands; a question is worded here, with the nearest RLA.
 function standsFor(state) {
   const { needs_go: waits, reason } = state.stands;
@@ -42,15 +51,15 @@ export function sentence(state) {
   if (standsFor(state)) return state.stands.text;
   switch (state.cause) {
     case "rla":
-      return `RLA ${state.rla}${of(state)} does ${words(state.action)}${taught(state)}`;
+      return `${driver(state)}${of(state)} does ${words(state.action)}${taught(state)}`;
     case "held":
-      return `RLA ${state.rla} keeps ${words(state.action)} for its shortest time; RLA ${state.nearest} is nearest now`;
+      return `${driver(state)} keeps ${words(state.action)} for its shortest time; ${nearest(state)} is nearest now`;
     case "teacher":
       return state.action && state.action !== "by hand"
         ? `${state.teacher ?? "A teacher"} runs ${words(state.action)}`
         : `${state.teacher ?? "A teacher"} drives by hand`;
     case "doubt":
-      return `I doubt RLA ${state.nearest}${of(state)} here, which says ${words(state.nearest_action)}, teach me`;
+      return `I doubt ${nearest(state)}${of(state)} here, which says ${words(state.nearest_action)}, teach me`;
     case "unknown":
       if (state.asks_at === MID) {
         if (state.nearest_action === WITHDRAWN && state.distance <= state.radius) {
@@ -60,10 +69,10 @@ export function sentence(state) {
         return state.distance === null ? "Where am I? Touch “is here” at a goal" : "Which way? I don't know, teach me";
       }
       if (state.nearest_action === WITHDRAWN && state.distance <= state.radius) {
-        return `RLA ${state.nearest}${of(state)} was marked wrong${valueNow(state)}, teach me again`;
+        return `${nearest(state)}${of(state)} was marked wrong${valueNow(state)}, teach me again`;
       }
       if (state.nearest !== null && state.distance !== null && state.distance <= state.radius) {
-        return `RLA ${state.nearest}${of(state)}: I no longer have ${words(state.nearest_action)}, teach me another action`;
+        return `${nearest(state)}${of(state)}: I no longer have ${words(state.nearest_action)}, teach me another action`;
       }
       return state.nearest === null ? `I know nothing${of(state)} yet, teach me` : "I don't know this situation, teach me";
     default:
@@ -93,7 +102,7 @@ function headline(state) {
   const flickers = asks(state) && !ASKED.includes(state.cause) && !standsFor(state);
   const says = flickers ? "I don't know this situation, teach me" : sentence(state);
   const its = state.nearest_action === WITHDRAWN ? "its action was withdrawn" : words(state.nearest_action ?? "–");
-  if (known(state)) return [says, `nearest: ${asksWay(state) ? "mid-level RLA" : "RLA"} ${state.nearest}, ${its}`];
+  if (known(state)) return [says, `nearest: ${asksWay(state) ? "mid-level " : ""}${nearest(state)}, ${its}`];
   if (!asksWay(state)) return [says, "touch the action that is right here"];
   // Without a distance the robot was put elsewhere.
   const nowhere = state.nearest !== null && state.distance === null;

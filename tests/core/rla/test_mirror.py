@@ -1,0 +1,90 @@
+"""An RLA of a mirrored system answers in two places, and is one RLA."""
+
+import numpy as np
+import pytest
+
+from kurt2rt.core.rla.active_rlas import Match
+from kurt2rt.core.rla.condition import Condition
+from kurt2rt.core.rla.events import LessonUndone, TeachingEvent
+from kurt2rt.core.rla.mirror import Mirror
+from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.rla.rla_system import RlaSystem
+from tests.core.rla.helpers import created, deleted, origin, replaced, withdrawn
+
+LEFT, RIGHT = (9.0, 0.0), (0.0, 9.0)
+MIRROR = Mirror(np.array([1, 0]), {"left": "right", "right": "left", "turn_left": "turn_right"})
+
+
+def system_of(*events: TeachingEvent) -> RlaSystem:
+    system = RlaSystem(2, 5.0, mirror=MIRROR)
+    system.apply_all(events)
+    return system
+
+
+def matched(system: RlaSystem, at: Condition, behaviour: str = "") -> Match:
+    match = system.match(np.array(at), behaviour)
+    assert match is not None
+    return match
+
+
+def test_it_answers_on_both_sides_with_one_id_and_counts_once() -> None:
+    system = system_of(created(1, LEFT, "left"))
+    near, image = matched(system, (9.0, 1.0)), matched(system, (1.0, 9.0))
+    assert (near.rla.rla_id, near.rla.action, near.rla.mirrored, near.distance) == (1, "left", False, 1.0)
+    assert (image.rla.rla_id, image.rla.action, image.rla.mirrored, image.distance) == (1, "right", True, 1.0)
+    assert tuple(image.rla.condition) == RIGHT
+    assert image.rla.title == "RLA 1 mirrored"
+    assert near.runner_up == image.rla
+    assert len(system) == 1
+    assert [rla.mirrored for rla in system.candidates()] == [False, True]
+    assert system.knowledge_hash() == _without_mirror(created(1, LEFT, "left")).knowledge_hash()
+
+
+def _without_mirror(*events: TeachingEvent) -> RlaSystem:
+    system = RlaSystem(2, 5.0)
+    system.apply_all(events)
+    return system
+
+
+def test_a_correction_an_undo_and_a_deletion_act_on_both_sides() -> None:
+    system = system_of(created(1, LEFT, "left"), replaced(1, "forward", "left"))
+    assert [matched(system, each).rla.action for each in (LEFT, RIGHT)] == ["forward", "forward"]
+    system.apply(LessonUndone("correction-1", origin("undo-1")))
+    assert [matched(system, each).rla.action for each in (LEFT, RIGHT)] == ["left", "right"]
+    system.apply(withdrawn(1, "left"))
+    assert [matched(system, each).known for each in (LEFT, RIGHT)] == [False, False]
+    system.apply(deleted(1))
+    assert system.match(np.array(LEFT)) is system.match(np.array(RIGHT)) is None
+
+
+def test_of_equally_near_ones_the_older_wins_and_each_before_its_image() -> None:
+    system = system_of(created(1, LEFT, "left"), created(2, RIGHT, "forward"))
+    assert matched(system, RIGHT).rla.rla_id == 1
+    assert matched(system, (3.0, 3.0)).rla.mirrored is False
+
+
+def test_its_image_belongs_to_the_mirrored_behaviour() -> None:
+    system = system_of(created(1, LEFT, "left", behaviour="turn_left"))
+    assert matched(system, RIGHT, "turn_right").rla.action == "right"
+    assert matched(system, RIGHT, "turn_left").distance > 9.0
+
+
+def test_other_levels_have_no_images() -> None:
+    system = RlaSystem(2, 5.0, mirror=MIRROR)
+    system.apply(created(1, LEFT, "left", level=MID))
+    assert system.candidates() == ()
+
+
+@pytest.mark.parametrize(("at", "taught"), [(LEFT, "right"), (RIGHT, "left")])
+def test_what_a_matched_rla_shall_do_is_told_as_it_was_taught(at: Condition, taught: str) -> None:
+    system = system_of(created(1, LEFT, "forward"))
+    assert system.as_taught(matched(system, at).rla, "right") == taught
+
+
+def test_competitors_of_an_image_are_images() -> None:
+    system = system_of(created(1, LEFT, "left"), created(2, LEFT, "right"))
+    group = system.competitors(matched(system, RIGHT).rla)
+    assert [(each.rla_id, each.action, tuple(each.condition)) for each in group] == [
+        (1, "right", RIGHT),
+        (2, "left", RIGHT),
+    ]
