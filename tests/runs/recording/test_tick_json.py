@@ -96,7 +96,13 @@ events = (
     some.builds(RlaCreated, rlas)
     | some.builds(LessonUndone, text, origins)
     | some.builds(
-        RlaRewarded, some.integers(1), some.sampled_from((1, -1)), some.integers(0, 2**40), origins, credits_, some.none()
+        RlaRewarded,
+        some.integers(1),
+        some.sampled_from((1, -1)),
+        some.integers(0, 2**40),
+        origins,
+        credits_,
+        some.none(),
     )
 )
 entries = some.builds(
