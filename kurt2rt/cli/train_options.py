@@ -41,8 +41,8 @@ class TrainOptions(EngineOptions):
         bool,
         typer.Option(
             "--until-right",
-            help="End each lesson after a clean drive, without press, question, touch or rescue, and not by the clock; "
-            "it lasts at most three times as long.",
+            help="End each lesson after a clean drive: a minute without press, question, touch or rescue. "
+            "It lasts at most three times as long as by the clock.",
         ),
     ] = False
     seed: Seed = 1

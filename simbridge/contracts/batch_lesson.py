@@ -71,7 +71,7 @@ class TaughtRlas(NamedTuple):
     """RLAs that a compiled robot decides by: those of the wanted behaviour, which compete, oldest first."""
 
     rla_ids: Sequence[int]
-    """With a minus sign for a mirror image."""
+    """Ids, with a minus sign for a mirror image."""
     conditions: Sequence[NDArray[np.float64]]
     """Weighted features of each RLA, the recent ones first, and averages if they count, (values,)."""
     radii: Sequence[float]

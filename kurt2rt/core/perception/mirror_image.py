@@ -12,7 +12,7 @@ from kurt2rt.core.rla.mirror import Mirror
 
 _SIDES = {"left": "right", "right": "left"}
 _DECIMALS = 6
-"""Of metres and degrees, to which places of sensors are compared."""
+"""Decimals of metres and degrees to which places of sensors are compared."""
 
 
 def build_mirror(

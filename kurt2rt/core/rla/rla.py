@@ -79,7 +79,7 @@ class Rla:
     level: str = BASIC
     """Level of its condition and action."""
     mirrored: bool = False
-    """Whether this is the mirror image of the RLA of this id, as a match returns it (`Mirror`); never stored."""
+    """True for the mirror image of the RLA of this id, as a match returns it (`Mirror`); never stored."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "condition", pack_condition(self.condition))

@@ -30,7 +30,7 @@ def mirror_of(
     return build_mirror(definition, infrared, {**REPERTOIRE, **more}, ("straight_on", "turn_left", "turn_right"))
 
 
-def test_kurt2_is_symmetric_and_two_images_are_the_situation_again() -> None:
+def test_two_images_are_the_situation_again() -> None:
     mirror = mirror_of()
     names = BASIC_SITUATION.names
     images = dict(zip(names, (names[place] for place in mirror.order), strict=True))

@@ -57,7 +57,7 @@ def test_a_correction_an_undo_and_a_deletion_act_on_both_sides() -> None:
     assert system.match(np.array(LEFT)) is system.match(np.array(RIGHT)) is None
 
 
-def test_of_equally_near_ones_the_older_wins_and_each_before_its_image() -> None:
+def test_older_one_wins_and_each_before_its_image() -> None:
     system = system_of(created(1, LEFT, "left"), created(2, RIGHT, "forward"))
     assert matched(system, RIGHT).rla.rla_id == 1
     assert matched(system, (3.0, 3.0)).rla.mirrored is False
@@ -76,7 +76,7 @@ def test_other_levels_have_no_images() -> None:
 
 
 @pytest.mark.parametrize(("at", "taught"), [(LEFT, "right"), (RIGHT, "left")])
-def test_what_a_matched_rla_shall_do_is_told_as_it_was_taught(at: Condition, taught: str) -> None:
+def test_correction_of_an_image_is_told_as_it_was_taught(at: Condition, taught: str) -> None:
     system = system_of(created(1, LEFT, "forward"))
     assert system.as_taught(matched(system, at).rla, "right") == taught
 
