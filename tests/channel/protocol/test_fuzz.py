@@ -262,9 +262,8 @@ def test_a_device_gone_mad_is_answered_and_changes_nothing(tmp_path: Path) -> No
 
 
 @pytest.mark.deep
-@pytest.mark.timeout(3600)
-def test_ten_million_datagrams_of_strangers(tmp_path: Path) -> None:
-    _strangers(tmp_path, 10_000_000, seed=3)
+def test_a_million_datagrams_of_strangers(tmp_path: Path) -> None:
+    _strangers(tmp_path, 1_000_000, seed=3)
 
 
 @pytest.mark.deep

@@ -32,15 +32,6 @@ def taught_shortly(name: str, *, plain: bool) -> TaskSettings:
     return load_task(name, paper_defaults=plain, changes={key: str(seconds) for key, seconds in times.items()})
 
 
-def test_results_are_those_of_the_bus(tmp_path: Path) -> None:
-    taught = teach(tmp_path / "k", short_task(exam_s=EXAM_S))
-    exams = exams_of(taught.events, ("a", "c"), (1,))
-    results = examine_in_batch(STAGE, ROBOT, taught.task, exams)
-    assert any(results)
-    for exam, result in zip(exams, results, strict=True):
-        assert result is None or result == exam_on_bus(taught.task, exam)
-
-
 def test_robot_that_is_stuck_ends_its_exam_early() -> None:
     task = short_task(exam_s=3.0, stuck_after_s=1.0)
     exam = ExamSetup("a", 1)
