@@ -538,6 +538,14 @@ def test_simulation_and_speed_of_lessons_are_chosen_in_more(a_lesson: Lesson) ->
     phone.wait(lambda: a_lesson.robot.told_of(run)[1:] == [(run, None, None, True)], "a new knowledge file is wanted")
 
 
+def test_a_minute_without_help_suggests_the_exam(a_lesson: Lesson) -> None:
+    a_lesson.begin(of_robot(), progress=Progress(60, 99, 0))
+    a_lesson.reads("#progress", "asks 0 a minute · rules 1 · a clean minute")
+    a_lesson.show(progress=Progress(60, 99, 1))
+    a_lesson.reads("#progress", "asks 1 a minute")
+    assert "clean" not in a_lesson.phone.text("#progress")
+
+
 # For all people.
 
 

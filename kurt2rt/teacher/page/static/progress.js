@@ -3,6 +3,7 @@
 import { setText } from "./decision.js";
 
 const MINUTE_S = 60;
+const CLEAN_PERCENT = 98; // a press or a question takes more
 
 // Returns the progress of a simulated robot in its task, such as "laps 2.3"; empty for a real robot.
 export function measured({ progress, unit }) {
@@ -15,6 +16,7 @@ export function progress({ progress, rlas }, measure = "") {
   const parts = [`rules ${rlas}`]
   if (driven !== null) parts.unshift(`by itself ${driven} %`, seconds < MINUTE_S ? `asks ${asks} in ${seconds} s` : `asks ${asks} a minute`);
   if (measure) parts.push(measure);
+  if (seconds >= MINUTE_S && asks === 0 && driven >= CLEAN_PERCENT) parts.push(measure ? "a clean minute: exam?" : "a clean minute");
   return parts.join(" · ");
 }
 
