@@ -205,9 +205,9 @@ class ActiveRlas:
         )
 
     def candidate_count(self, behaviour: str = "", level: str = BASIC) -> int:
-        """Return the number of RLAs, mirror images included, that compete at a level for a behaviour."""
+        """Return the number of RLAs that compete at a level for a behaviour; one and its mirror image count once."""
         index = self._indexes.get((level, behaviour))
-        return 0 if index is None else len(index.rlas)
+        return 0 if index is None else len({rla.rla_id for rla in index.rlas})
 
     def candidates(self, behaviour: str = "") -> tuple[Rla, ...]:
         """Return the RLAs of the basic level that compete for a behaviour, mirror images included, oldest first."""

@@ -35,7 +35,7 @@ def test_it_answers_on_both_sides_with_one_id_and_counts_once() -> None:
     assert tuple(image.rla.condition) == RIGHT
     assert image.rla.title == "RLA 1 mirrored"
     assert near.runner_up == image.rla
-    assert len(system) == 1
+    assert len(system) == system.candidate_count() == 1
     assert [rla.mirrored for rla in system.candidates()] == [False, True]
     assert system.knowledge_hash() == _without_mirror(created(1, LEFT, "left")).knowledge_hash()
 
