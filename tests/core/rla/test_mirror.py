@@ -3,13 +3,23 @@
 import numpy as np
 import pytest
 
+from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.decision.decision import ActiveBehaviour
+from kurt2rt.core.expectations.expectations import Expectations
+from kurt2rt.core.expectations.tracker import BasicTransitionTracker
+from kurt2rt.core.outcome_text import text_of
+from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.active_rlas import Match
-from kurt2rt.core.rla.condition import Condition
+from kurt2rt.core.rla.condition import Condition, Space
 from kurt2rt.core.rla.events import LessonUndone, TeachingEvent
 from kurt2rt.core.rla.mirror import Mirror
-from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.teaching.authority import ControlAuthority
+from kurt2rt.core.teaching.command_handler import CommandHandler
+from tests.core.helpers import MINIMUM_TICKS, Counted, sensed
 from tests.core.rla.helpers import created, deleted, origin, replaced, withdrawn
+from tests.teacher.helpers import correct
 
 LEFT, RIGHT = (9.0, 0.0), (0.0, 9.0)
 MIRROR = Mirror(np.array([1, 0]), {"left": "right", "right": "left", "turn_left": "turn_right"})
@@ -75,10 +85,34 @@ def test_other_levels_have_no_images() -> None:
     assert system.candidates() == ()
 
 
-@pytest.mark.parametrize(("at", "taught"), [(LEFT, "right"), (RIGHT, "left")])
-def test_correction_of_an_image_is_told_as_it_was_taught(at: Condition, taught: str) -> None:
+@pytest.mark.parametrize(("at", "opposite"), [(LEFT, "left"), (RIGHT, "right")])
+def test_corrected_image_does_on_its_side_what_was_pressed(at: Condition, opposite: str) -> None:
     system = system_of(created(1, LEFT, "forward"))
-    assert system.as_taught(matched(system, at).rla, "right") == taught
+    actions = {name: Counted() for name in ("left", "right", "forward")}
+    level = BasicLevel(system, actions, MINIMUM_TICKS, ActiveBehaviour(("",)))
+    school = CommandHandler(
+        level, ControlAuthority(actions, attended=False), insert_radius_fraction=0.5, handled_command_ids=()
+    )
+    here = Situation(np.array(at), history_frozen=False)
+    assert level.decide(here, sensed(), None).mirrored is (at == RIGHT)
+    pressed = {"left": "right", "right": "left"}[opposite]
+    result, (event,) = school.handle(correct(pressed), here, 9)
+    assert matched(system, at).rla.action == pressed
+    assert matched(system, tuple(reversed(at))).rla.action == opposite
+    assert ("RLA 1 mirrored" in text_of(result.outcome)) is (at == RIGHT)
+    system.apply(LessonUndone(event.origin.command_id, origin("undo-1")))
+    assert matched(system, at).rla.action == "forward"
+
+
+def test_end_of_an_image_is_learned_as_its_mirror_image() -> None:
+    system = system_of(created(1, LEFT, "left"), created(2, (5.0, 5.0)))
+    expectations = Expectations(BASIC, system, Space(2, 5.0), {})
+    tracker = BasicTransitionTracker(expectations)
+    tracker.update(1, 1, np.array(RIGHT), "", mirrored=True)
+    tracker.update(9, 2, np.array([3.0, 7.0]), "", mirrored=False)
+    learned = expectations.get(1)
+    assert learned is not None
+    assert learned.mean.tolist() == [7.0, 3.0]
 
 
 def test_competitors_of_an_image_are_images() -> None:
