@@ -24,6 +24,7 @@ _LATENESS_EVERY = 20
 class _Nearest(TypedDict):
     nearest: int | None
     nearest_action: str | None
+    nearest_mirrored: bool
     distance: float
     radius: float
     taught_by: str
@@ -90,7 +91,6 @@ class StateBuilder:
             action=decision.action,
             rla=decision.rla_id,
             mirrored=decision.mirrored,
-            nearest_mirrored=decision.match is not None and decision.match.rla.mirrored,
             question=self._question(record),
             teacher=commands.authority.teacher,
             by_hand=commands.authority.is_manual(record.tick),
@@ -135,6 +135,7 @@ class StateBuilder:
             return _Nearest(
                 nearest=None,
                 nearest_action=None,
+                nearest_mirrored=False,
                 distance=float("inf"),
                 radius=radius,
                 taught_by="",
@@ -144,6 +145,7 @@ class StateBuilder:
         return _Nearest(
             nearest=match.rla.rla_id,
             nearest_action=match.rla.action,
+            nearest_mirrored=match.rla.mirrored,
             distance=match.distance,
             radius=match.radius,
             taught_by=match.rla.origin.teacher,

@@ -195,15 +195,13 @@ class BasicLevel:
         if self._held.lost:
             # The action is not restarted: it goes on by itself once its situation is known again.
             return Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, match)
-        action, doubts = self._held.name, self._doubts
-        if doubts is None:
-            return Decision(wheel_speeds, cause, action, rla.rla_id, match, answers, mirrored=rla.mirrored)
-        score = doubts.meter.score(situation.vector, match, action, self._behaviour)
-        if doubts.update(score, alone=self.skip_withdrawn):
-            self._held.stop()
-            return Decision(STANDSTILL, DecisionCause.DOUBT, None, None, match, doubt=score)
-        rla_id, mirrored = rla.rla_id, rla.mirrored
-        return Decision(wheel_speeds, cause, action, rla_id, match, answers, doubt=score, mirrored=mirrored)
+        action, doubts, score = self._held.name, self._doubts, None
+        if doubts is not None:
+            score = doubts.meter.score(situation.vector, match, action, self._behaviour)
+            if doubts.update(score, alone=self.skip_withdrawn):
+                self._held.stop()
+                return Decision(STANDSTILL, DecisionCause.DOUBT, None, None, match, doubt=score)
+        return Decision(wheel_speeds, cause, action, rla.rla_id, match, answers, doubt=score, mirrored=rla.mirrored)
 
     def new_obstacle(self, match: Match, vector: NDArray[np.float64]) -> NewObstacle | None:
         """Return the sensor that makes the robot doubt the nearest RLA in a situation (d,); None if no sensor does."""

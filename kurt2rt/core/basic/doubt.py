@@ -198,7 +198,7 @@ class DoubtMeter:
 
         Readings of the nearest RLA count even if no other lesson has such: an answer ends the doubt that it is about.
         """
-        nearest = rla.rla_id, rla.mirrored
+        nearest = rla.key
         if self._taught is None:
             self._taught = self._read_lessons()
         if self._nearest != nearest:
@@ -212,8 +212,7 @@ class DoubtMeter:
         of: dict[str, list[tuple[float, ...]]] = {}
         for rla in self._system.matched_rlas:
             if rla.action in self.actions:
-                key = rla.rla_id, rla.mirrored
-                row = rows[key] = self._rows.get(key) or self._row(rla)
+                row = rows[rla.key] = self._rows.get(rla.key) or self._row(rla)
                 of.setdefault(rla.behaviour, []).append(row)
         self._rows = rows
         return {

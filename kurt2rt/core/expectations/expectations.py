@@ -120,7 +120,7 @@ class Expectations:
     def mirrored(self, situation: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the mirror image of a situation (d,) of RLAs that have mirror images."""
         mirror = self._system.mirror
-        return situation if mirror is None else situation[mirror.order]
+        return situation if mirror is None else mirror.situation(situation)
 
     def learn(self, end: End) -> Surprise | None:
         """Learn one end of an RLA and return its surprise.

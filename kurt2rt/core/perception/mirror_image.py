@@ -64,7 +64,7 @@ def _mirrored_names(names: Iterable[str]) -> dict[str, str]:
     known = tuple(names)
     images = {name: "_".join(_SIDES.get(word, word) for word in name.split("_")) for name in known}
     changed = {name: image for name, image in images.items() if name != image}
-    return {name: _required(image if image in known else None, f"{name}") for name, image in changed.items()}
+    return {name: _required(image if image in known else None, name) for name, image in changed.items()}
 
 
 def _required(image: str | None, what: str) -> str:

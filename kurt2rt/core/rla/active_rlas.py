@@ -65,20 +65,12 @@ class CandidateIndex:
         self.index.remove(position)
         del self.rlas[position]
 
-    def distances(self, condition: Condition | NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the distance of each RLA, (n,), to an unweighted condition (d,)."""
-        return self.index.distances(self._weighted(condition))
-
     def _position(self, rla: Rla) -> int:
-        return bisect_left(self.rlas, _age(rla), key=_age)
+        return bisect_left(self.rlas, rla.key, key=lambda each: each.key)
 
-    def _weighted(self, condition: Condition | NDArray[np.float64]) -> NDArray[np.float64]:
+    def _weighted(self, condition: Condition) -> NDArray[np.float64]:
         weighted: NDArray[np.float64] = np.array(condition, dtype=np.float64) * self.weights
         return weighted
-
-
-def _age(rla: Rla) -> tuple[int, bool]:
-    return rla.rla_id, rla.mirrored
 
 
 def _make_index(space: Space) -> ConditionIndex | SymbolIndex:
@@ -232,12 +224,8 @@ class ActiveRlas:
 
     def neighbours(self, rla: Rla, count: int) -> tuple[Rla, ...]:
         """Return at most `count` RLAs of its level and behaviour with another condition, nearest first; sorts all."""
-        index = self._indexes.get((rla.level, rla.behaviour))
-        if index is None:
-            return ()
-        order = np.argsort(index.distances(rla.condition), kind="stable").tolist()
-        others = (index.rlas[place] for place in order)
-        return tuple(islice((other for other in others if other.condition != rla.condition), count))
+        near = self.nearest_first(np.array(rla.condition, dtype=np.float64), rla.behaviour, rla.level)
+        return tuple(islice((other for other, _ in near if other.condition != rla.condition), count))
 
     def _oldest_first(self) -> Iterator[Rla]:
         return (self._rlas[rla_id] for rla_id in sorted(self._rlas))

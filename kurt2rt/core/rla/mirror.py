@@ -26,11 +26,15 @@ class Mirror:
         """Return the mirror image of an action or behaviour; the name itself if it looks the same."""
         return self.names.get(name, name)
 
+    def situation(self, vector: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the mirror image of a situation (d,)."""
+        return vector[self.order]
+
     def rla(self, rla: Rla) -> Rla:
         """Return the mirror image of an RLA, which has the same id."""
         return replace(
             rla,
-            condition=tuple(np.array(rla.condition)[self.order].tolist()),
+            condition=tuple(self.situation(np.array(rla.condition)).tolist()),
             action=self.name(rla.action),
             behaviour=self.name(rla.behaviour),
             mirrored=not rla.mirrored,

@@ -90,6 +90,11 @@ class Rla:
         return rla_title(self.rla_id, self.behaviour, self.level, mirrored=self.mirrored)
 
     @property
+    def key(self) -> tuple[int, bool]:
+        """Id, and whether it is the mirror image: what tells apart the RLAs that a match compares."""
+        return self.rla_id, self.mirrored
+
+    @property
     def is_withdrawn(self) -> bool:
         """Return whether the RLA's action was withdrawn: inside its radius the robot asks."""
         return self.action == ASK

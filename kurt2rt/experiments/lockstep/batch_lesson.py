@@ -197,8 +197,8 @@ class BatchTrainingRun(TrainingRun):
         ends = [begin + _STRETCH_TICKS, self._planned_ticks, *self._phase_starts_after(begin)]
         if self._reposition_every:
             ends.append((begin // self._reposition_every + 1) * self._reposition_every)
-        if self._clean_ticks is not None and self._unclean_at + self._clean_ticks > begin:
-            ends.append(self._unclean_at + self._clean_ticks)
+        if self._clean_end is not None and self._clean_end > begin:
+            ends.append(self._clean_end)
         arrives = self._teacher.command_due
         if arrives is not None and not self._mind.holds:
             ends.append(max(begin + 1, arrives))

@@ -231,10 +231,10 @@ def _taught_mind(runtime: Runtime, settings: RobotSettings, task: TaskSettings) 
     values = len(features.weights) + len(features.average_weights)
     known = [[rla for rla in system.candidates(each) if not system.passes_over(rla)] for each in task.behaviours]
     rlas = [rla for each in known for rla in each]
-    place = {(rla.rla_id, rla.mirrored): index for index, rla in enumerate(rlas)}
+    place = {rla.key: index for index, rla in enumerate(rlas)}
     groups = [system.competitors(rla) for rla in rlas]
     would_answer = [level.would_answer(group) for group in groups]
-    answers = [place[rla.rla_id, rla.mirrored] for rla in would_answer]
+    answers = [place[rla.key] for rla in would_answer]
     conditions = [(np.array(rla.condition, dtype=np.float64) * system.weights)[:values].tolist() for rla in rlas]
     return TaughtMind(
         sizes=tuple(map(len, known)),

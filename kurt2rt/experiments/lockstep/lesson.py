@@ -237,9 +237,14 @@ class TrainingRun(Episode):
             self.runtime.scheduler.end()  # a press waits in the inbox, which no further tick reads
 
     @property
+    def _clean_end(self) -> int | None:
+        """Tick in which the lesson ends if the robot needs no help until then; None: it ends by the clock."""
+        return None if self._clean_ticks is None else self._unclean_at + self._clean_ticks
+
+    @property
     def _is_right(self) -> bool:
         """Return whether the robot has driven for so long without help that the lesson may end."""
-        return self._clean_ticks is not None and self.ticks - self._unclean_at >= self._clean_ticks
+        return self._clean_end is not None and self.ticks >= self._clean_end
 
     def _note_unclean(self, tick: int) -> None:
         self._unclean_at = max(self._unclean_at, tick)

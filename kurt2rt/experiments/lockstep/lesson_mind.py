@@ -197,12 +197,12 @@ class LessonMind:
         if any(len(system.competitors(rla)) > 1 for rla in rlas):
             raise refused(self.runtime.task, "RLAs on one condition, among which a choice is drawn")
         for rla in rlas:
-            if (rla.rla_id, rla.mirrored) not in self._conditions:
+            if rla.key not in self._conditions:
                 weighted = np.array(rla.condition, dtype=np.float64) * system.weights
-                self._conditions[rla.rla_id, rla.mirrored] = weighted[:values]
+                self._conditions[rla.key] = weighted[:values]
         return TaughtRlas(
             [-rla.rla_id if rla.mirrored else rla.rla_id for rla in rlas],
-            [self._conditions[rla.rla_id, rla.mirrored] for rla in rlas],
+            [self._conditions[rla.key] for rla in rlas],
             [system.radius_of(rla) for rla in rlas],
             [rla.action for rla in rlas],
         )

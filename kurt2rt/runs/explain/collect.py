@@ -156,10 +156,6 @@ class _LevelSituation(NamedTuple):
     euclidean: bool = True
 
 
-def _key(rla: Rla) -> tuple[int, bool]:
-    return rla.rla_id, rla.mirrored
-
-
 class _Reader:
     """Lookup of levels and RLAs in one runtime."""
 
@@ -203,11 +199,11 @@ class _Reader:
         driver: Rla | None,
     ) -> LevelFacts:
         ranking = self._ranking(level_name, behaviour, situation.vector, driver)
-        distances = {_key(rla): distance for rla, distance in ranking}
-        matched = None if match is None else _key(match.rla)
-        nearer = takewhile(lambda each: _key(each[0]) != matched, () if match is None else ranking)
+        distances = {rla.key: distance for rla, distance in ranking}
+        matched = None if match is None else match.rla.key
+        nearer = takewhile(lambda each: each[0].key != matched, () if match is None else ranking)
         passed_over = (self._rla_facts(*each) for each in nearer if self._passes_over(each[0], level_name))
-        others = (each for each in ranking if _key(each[0]) != matched and not self._passes_over(each[0], level_name))
+        others = (each for each in ranking if each[0].key != matched and not self._passes_over(each[0], level_name))
         return LevelFacts(
             level=level_name,
             behaviour=behaviour,
@@ -216,7 +212,7 @@ class _Reader:
             weights=tuple(situation.weights.tolist()),
             euclidean=situation.euclidean,
             nearest=None if match is None else self._rla_facts(match.rla, match.distance, match.radius),
-            driver=None if driver is None else self._rla_facts(driver, distances.get(_key(driver), math.inf)),
+            driver=None if driver is None else self._rla_facts(driver, distances.get(driver.key, math.inf)),
             others=tuple(self._rla_facts(*each) for each in islice(others, self._most)),
             count=self._system.candidate_count(behaviour, level_name),
             radius_share=self._system.radius_share if level_name == BASIC else 1.0,
@@ -234,7 +230,7 @@ class _Reader:
         if self._most is not None:
             ranking = self._system.nearest_first(vector, behaviour, level_name, limit=self._most + 1 + _PASSED_OVER)
             speak = sum(not self._system.passes_over(rla) for rla, _ in ranking)
-            shown = driver is None or any(_key(rla) == _key(driver) for rla, _ in ranking)
+            shown = driver is None or any(rla.key == driver.key for rla, _ in ranking)
             if shown and speak > self._most:
                 return ranking
         return self._system.nearest_first(vector, behaviour, level_name)

@@ -8,7 +8,7 @@ from hal.robot import WheelSpeeds
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import ActiveStop
 from kurt2rt.core.message_fields import Int, Line, Number, OneOf, OrNotFinite, Share, Time, Title, Truth, UpTo
-from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.rla.rla import MID, rla_title
 
 MOST_OTHERS = 12
 """RLAs of a level that are sent in addition to the nearest: the next nearest."""
@@ -66,7 +66,7 @@ class RlaFacts:
     @property
     def name(self) -> str:
         """Return its short name for columns: RLA 17, or RLA 17 mirrored."""
-        return f"RLA {self.rla_id} mirrored" if self.mirrored else f"RLA {self.rla_id}"
+        return rla_title(self.rla_id, "", mirrored=self.mirrored)
 
 
 @dataclass(frozen=True, slots=True)
