@@ -50,8 +50,8 @@ from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import Clock
-from kurt2rt.platform.ledger import TickTimer
 from kurt2rt.platform.scheduler import Scheduler
+from kurt2rt.platform.tick_timer import TickTimer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

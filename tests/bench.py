@@ -46,8 +46,8 @@ from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.journal.writer import utc_now
-from kurt2rt.platform.ledger import Percentiles, TickTimer, percentiles_of
 from kurt2rt.platform.scheduler import Scheduler
+from kurt2rt.platform.tick_timer import Percentiles, TickTimer, percentiles_of
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runs.recording.recording import Recording
 from kurt2rt.runs.recording.run_folder import budget_of
@@ -246,7 +246,7 @@ async def loop(bench: Bench) -> list[Row]:
     goals = {"60 times": 60.0 * tick.median_us <= PERIOD_US}
     return [
         Row("closed loop in lockstep, a tick", tick, "period", PERIOD_US, goals),
-        share_of_tick("runtime's share of a tick, lockstep", given.result.ledger.tick()),
+        share_of_tick("runtime's share of a tick, lockstep", given.result.timer.tick()),
     ]
 
 

@@ -26,7 +26,7 @@ from kurt2rt.core.teaching.commands import BeAt, Command, CommandResult, Correct
 from kurt2rt.core.teaching.inbox import Input, PairingRenewed, RobotRepositioned, SpeedChanged, SystemEvent
 from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.platform.ledger import Stage
+from kurt2rt.platform.tick_timer import Stage
 
 # The results of the steps are made in every tick: a plain dataclass takes half the time of a named tuple.
 

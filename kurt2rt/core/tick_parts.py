@@ -13,7 +13,7 @@ from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.rla.statistics import StatisticsCounter
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.inbox import TeacherInbox
-from kurt2rt.platform.ledger import TickTimer
+from kurt2rt.platform.tick_timer import TickTimer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Generic, TypeVar
 
 from kurt2rt.platform.clock import Clock
-from kurt2rt.platform.ledger import TickTimer
+from kurt2rt.platform.tick_timer import TickTimer
 
 RecordT = TypeVar("RecordT")
 
@@ -17,13 +17,13 @@ class Scheduler(Generic[RecordT]):
     """
 
     def __init__(
-        self, clock: Clock, run_tick: Callable[[int, float], RecordT], period_s: float, ledger: TickTimer
+        self, clock: Clock, run_tick: Callable[[int, float], RecordT], period_s: float, timer: TickTimer
     ) -> None:
         """`run_tick`: takes the tick's number, from 1, and its time in seconds; returns the tick's record."""
         self._clock = clock
         self._run_tick = run_tick
         self._period_s = period_s
-        self._ledger = ledger
+        self._timer = timer
         self._number = 0
         self._ending = False
 
@@ -47,10 +47,10 @@ class Scheduler(Generic[RecordT]):
             now_s = clock.now_s()
             missed = int((now_s - deadline_s) / period_s)
             if missed > 0:
-                self._ledger.missed_ticks += missed
+                self._timer.missed_ticks += missed
                 self._number += missed
                 deadline_s += missed * period_s
-            self._ledger.begin(now_s - deadline_s)
+            self._timer.begin(now_s - deadline_s)
             after_tick(self._run_tick(self._number, now_s))
-            self._ledger.end()
+            self._timer.end()
         self._ending = False

@@ -51,12 +51,12 @@ async def work(folder: Path, sweeper: _Sweeper) -> None:
 
     def tell(status: ProgramStatus) -> None:
         (channel,) = channels
-        counters, ledger = channel.endpoint.counters, status.runtime.timer
+        counters, timer = channel.endpoint.counters, status.runtime.timer
         line = {
             "resident_kb": resident_kb(),
-            "ticks": ledger.ticks,
-            "missed": ledger.missed_ticks,
-            "late_p99_us": ledger.lateness().p99_us,
+            "ticks": timer.ticks,
+            "missed": timer.missed_ticks,
+            "late_p99_us": timer.lateness().p99_us,
             "received": counters.received,
             "dropped": counters.dropped_by_bucket,
             "junk": counters.junk,

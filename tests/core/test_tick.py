@@ -26,7 +26,7 @@ from kurt2rt.core.teaching.knowledge_updater import HandlerParts
 from kurt2rt.core.tick import Tick
 from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.platform.ledger import TickTimer
+from kurt2rt.platform.tick_timer import TickTimer
 from tests.core.perception.helpers import READINGS, SENSORS, WHEELS, definition
 from tests.teacher.helpers import correct, delete, resume, stop, teach
 
@@ -100,7 +100,7 @@ class Corridor:
         )
         self.inbox = TeacherInbox()
         self.statistics = StatisticsCounter()
-        self.ledger = TickTimer()
+        self.timer = TickTimer()
         authority = ControlAuthority(repertoire, attended=attended)
         self.school = CommandHandler(
             self.level,
@@ -119,7 +119,7 @@ class Corridor:
             inbox=self.inbox,
             event_store=self.notebook,
             statistics=self.statistics,
-            timer=self.ledger,
+            timer=self.timer,
         )
         options = TickOptions(stale_infrared_s=0.05, tolerates_stalls=tolerates_stalls, asks_at_bumper=asks_when_held)
         self.tick = Tick(parts, options, now=lambda: self.ticks * 0.01 + self.held_up_s)
@@ -132,9 +132,9 @@ class Corridor:
         for command in commands:
             self.inbox.put(command)
         self.ticks += 1
-        self.ledger.begin(0.0)
+        self.timer.begin(0.0)
         record = self.tick.run(self.ticks, self.ticks * 0.01)
-        self.ledger.end()
+        self.timer.end()
         return record
 
 

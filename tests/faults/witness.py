@@ -7,7 +7,7 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.teaching.commands import Resume
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.faulty_sensor import RobotProxy
-from kurt2rt.platform.ledger import TickTimer
+from kurt2rt.platform.tick_timer import TickTimer
 from tests.faults.envelope import Envelope, WheelCommand
 from tests.faults.rig import Rig
 from tests.faults.table import TABLE
@@ -68,7 +68,7 @@ class Witness(RobotProxy):
         self.envelope.bumper_pressed = readings.bumpers != 0
         return readings
 
-    def on_tick(self, record: TickRecord, ledger: TickTimer, begun_s: float, period_s: float) -> None:
+    def on_tick(self, record: TickRecord, timer: TickTimer, begun_s: float, period_s: float) -> None:
         """Check a tick of a loop that began at `begun_s` on its own clock."""
         now_s, cause = self._time.now_s(), record.decision.cause
         moves = record.guard_result.wheel_speeds != STANDSTILL
@@ -83,8 +83,8 @@ class Witness(RobotProxy):
             self._complain(f"drives though {self._must_stand}, without a resume")
         if record.guard_result.latched:
             self._must_stand = ", ".join(record.guard_result.reasons) or "stopped for good"
-        if ledger.ticks + 1 + ledger.missed_ticks != record.tick:
-            self._complain(f"tick {record.tick}: {ledger.ticks + 1} and {ledger.missed_ticks} missed are not as many")
+        if timer.ticks + 1 + timer.missed_ticks != record.tick:
+            self._complain(f"tick {record.tick}: {timer.ticks + 1} and {timer.missed_ticks} missed are not as many")
         late_s = record.now_s - begun_s - record.tick * period_s
         if not -_ROUNDING_S <= late_s < period_s + _ROUNDING_S and not self.envelope.clock_is_faulty:
             self._complain(f"tick {record.tick} is {late_s:.6f} s off its deadline")

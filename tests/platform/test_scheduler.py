@@ -19,8 +19,8 @@ from kurt2rt.core.tick import Tick
 from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
-from kurt2rt.platform.ledger import TickTimer
 from kurt2rt.platform.scheduler import Scheduler
+from kurt2rt.platform.tick_timer import TickTimer
 from tests.core.perception.helpers import READINGS, SENSORS, definition
 
 PERIOD_S = 0.01
@@ -69,7 +69,7 @@ class Run:
             RlaSystem(small.dimensions, 10.0), {"stand": MotorPrimitive(STANDSTILL)}, 1, ActiveBehaviour()
         )
         self.clock = clock
-        self.ledger = TickTimer(capacity=100)
+        self.timer = TickTimer(capacity=100)
         school = CommandHandler(
             level,
             ControlAuthority(level.repertoire, attended=False),
@@ -84,10 +84,10 @@ class Run:
             inbox=TeacherInbox(),
             event_store=NoTeachingAllowed(),
             statistics=StatisticsCounter(),
-            timer=self.ledger,
+            timer=self.timer,
         )
         tick = Tick(parts, TickOptions(stale_infrared_s=0.05), now=clock.now_s)
-        self.scheduler = Scheduler(clock, tick.run, PERIOD_S, self.ledger)
+        self.scheduler = Scheduler(clock, tick.run, PERIOD_S, self.timer)
         self.records: list[TickRecord] = []
         self.delays_s: dict[int, float] = {}
         """How much longer than nothing the work after a tick takes, by the tick's number."""
@@ -109,7 +109,7 @@ async def test_deadlines_do_not_drift_with_late_ticks() -> None:
     run = Run(HandClock())
     run.delays_s = dict.fromkeys(range(1, 500), 0.006)  # each tick's work takes more than half the period
     await run.ticks(500)
-    assert run.ledger.missed_ticks == 0
+    assert run.timer.missed_ticks == 0
     assert run.clock.deadlines_s == [number * PERIOD_S for number in range(1, 501)]
 
 
@@ -118,20 +118,20 @@ async def test_a_late_tick_is_run_late_and_the_next_one_on_time() -> None:
     run.delays_s = {2: 0.015}  # tick 3 begins half a period late: not missed
     assert await run.ticks(5) == [1, 2, 3, 4, 5]
     assert [round(record.now_s, 6) for record in run.records] == [0.01, 0.02, 0.035, 0.04, 0.05]
-    assert run.ledger.missed_ticks == 0
-    assert run.ledger.lateness().worst_us == pytest.approx(5000, abs=1)
+    assert run.timer.missed_ticks == 0
+    assert run.timer.lateness().worst_us == pytest.approx(5000, abs=1)
 
 
 async def test_scheduler_missed_ticks_are_skipped_and_counted() -> None:
     run = Run(HandClock())
     run.delays_s = {3: 0.0578}
     assert await run.ticks(15) == [1, 2, 3, 8, 9, 10, 11, 12, 13, 14, 15]
-    assert run.ledger.missed_ticks == 4
-    assert run.ledger.ticks == 11
+    assert run.timer.missed_ticks == 4
+    assert run.timer.ticks == 11
     starts_s = [record.now_s for record in run.records]
     assert starts_s[3] == pytest.approx(0.0878)
     assert starts_s[4:] == pytest.approx([number * PERIOD_S for number in range(9, 16)])
-    assert run.ledger.lateness().worst_us == pytest.approx(7800, abs=1)
+    assert run.timer.lateness().worst_us == pytest.approx(7800, abs=1)
 
 
 async def test_end_lets_it_return_after_the_tick_it_is_in() -> None:

@@ -24,7 +24,7 @@ from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_
 from kurt2rt.experiments.lockstep.sensor_stop import SensorStopAct, SensorStopTimer
 from kurt2rt.experiments.lockstep.teacher_of_plan import teacher_of
 from kurt2rt.experiments.lockstep.teacher_workload import TeacherWorkload, WorkloadMinute
-from kurt2rt.platform.ledger import TickTimer
+from kurt2rt.platform.tick_timer import TickTimer
 from kurt2rt.runtime import Runtime
 from kurt2rt.teacher.scripted.build import build_teacher
 from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
@@ -94,7 +94,7 @@ class TrainingResult:
     """Number of RLAs after each second of teaching."""
     trail: tuple[Position, ...]
     ask_positions: tuple[Position, ...]
-    ledger: TickTimer = field(compare=False, repr=False)
+    timer: TickTimer = field(compare=False, repr=False)
     """Durations of the last ticks on the machine of the run."""
     progress: float = 0.0
     """Progress by the task's metric, in `unit`."""
@@ -293,7 +293,7 @@ class TrainingRun(Episode):
             growth=tuple(self._growth),
             trail=tuple(self.trail),
             ask_positions=tuple(self.ask_positions),
-            ledger=runtime.timer,
+            timer=runtime.timer,
             progress=self.metric.progress,
             unit=self.metric.unit,
             findings=self.metric.findings,

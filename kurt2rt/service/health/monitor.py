@@ -169,14 +169,14 @@ class HealthMonitor:
         self._disks.__exit__(kind, error, trace)
 
     def _punctuality(self, snapshot: Snapshot) -> TickLateness:
-        ledger = self._runtime.timer
-        lately, late = ledger.lateness_of_last(self._every_ticks), ledger.lateness()
+        timer = self._runtime.timer
+        lately, late = timer.lateness_of_last(self._every_ticks), timer.lateness()
         return TickLateness(
             newest_ms=lately.worst_us / 1000,
             median_ms=late.median_us / 1000,
             p99_ms=late.p99_us / 1000,
             worst_ms=late.worst_us / 1000,
-            took_p99_ms=ledger.tick().p99_us / 1000,
+            took_p99_ms=timer.tick().p99_us / 1000,
             ticks=snapshot.ticks,
             missed=snapshot.missed_ticks,
             missed_lately=self._counted.growth("missed"),

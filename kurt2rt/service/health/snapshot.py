@@ -51,7 +51,7 @@ def take_snapshot(
         instruments: parts outside the runtime.
         now_s: present time of the monotonic clock, in s.
     """
-    system, ledger = runtime.level.system, runtime.timer
+    system, timer = runtime.level.system, runtime.timer
     errors = {part: error() for part, error in instruments.errors.items()}
     errors["teaching"] = runtime.handler.updater.error
     return Snapshot(
@@ -64,8 +64,8 @@ def take_snapshot(
         last_write_s=keeping.last_write_s,
         drops={queue: count() for queue, count in instruments.drops.items()},
         errors={part: line for part, line in errors.items() if line},
-        ticks=ledger.ticks,
-        missed_ticks=ledger.missed_ticks,
+        ticks=timer.ticks,
+        missed_ticks=timer.missed_ticks,
         rlas=len(system),
         lessons=system.history.standing,
         progress=runtime.progress.progress(),

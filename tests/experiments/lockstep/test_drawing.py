@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.experiments.lockstep.drawing import draw_curriculum
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
-from kurt2rt.platform.ledger import TickTimer
+from kurt2rt.platform.tick_timer import TickTimer
 from simbridge.contracts.simulation import Position
 from tests.experiments.helpers import STAGE, short_task
 from tests.experiments.rows import judged, lesson
@@ -27,7 +27,7 @@ def test_the_picture_holds_the_lesson_its_growth_and_each_exam(
         growth=tuple(range(20)),
         trail=trail,
         ask_positions=trail[1:],
-        ledger=TickTimer(),
+        timer=TickTimer(),
     )
     draw_curriculum(result, exams, short_task(), STAGE, Path("never.png"))
     axes = [each for each in drawn[0].axes if each.axison]

@@ -69,8 +69,8 @@ async def drive(bus: str, seconds: float, hangs_at: int) -> None:
         )
         await runtime.scheduler.run(round(seconds / period_s), after_tick)
     robot.close()
-    ledger = runtime.timer
-    print(json.dumps({"ticks": ledger.ticks, "missed": ledger.missed_ticks, "turns": turns}))
+    timer = runtime.timer
+    print(json.dumps({"ticks": timer.ticks, "missed": timer.missed_ticks, "turns": turns}))
 
 
 if __name__ == "__main__":
