@@ -50,8 +50,9 @@ class InstantLink:
         """Close nothing: this link is in memory."""
 
 
-_KERNEL_DELIVERY_S = 0.001
-"""Pause in which the kernel's own thread delivers the frames of a cycle."""
+_DELIVERY_PAUSES, _DELIVERY_PAUSE_S = 8, 0.0005
+"""Pauses in which the kernel's own thread delivers the frames of a cycle. One alone can pass while the whole machine
+stands still, and then the thread has not run."""
 
 
 class CanLine(InstantLink):
@@ -67,13 +68,13 @@ class CanLine(InstantLink):
         self.robot_end, self.notebook_end = open_bus(spec), open_bus(spec)
         if bus is not None:
             self.robot_end.set_id_filter({CONTROL_ID})  # frames of others must not cost the robot its cycle
-        self._delivery_s = 0.0 if ":" in spec else _KERNEL_DELIVERY_S
+        self._pauses = 0 if ":" in spec else _DELIVERY_PAUSES
 
     def cycle(self, step_robot: Callable[[], None]) -> None:
         """Step the robot, then wait until the bus has delivered its frames."""
         step_robot()
-        if self._delivery_s:
-            time.sleep(self._delivery_s)
+        for _ in range(self._pauses):
+            time.sleep(_DELIVERY_PAUSE_S)
 
     def close(self) -> None:
         """Shut the robot's end of the bus down."""
