@@ -25,7 +25,7 @@ from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.perception.definition import SituationDefinition, feature_weights, load_situation
-from kurt2rt.core.perception.mirror_image import build_mirror
+from kurt2rt.core.perception.images import build_images
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.planning.navigator import Navigator
 from kurt2rt.core.progress_meter import ProgressMeter
@@ -155,10 +155,16 @@ def empty_system(
     others = {CRITIC: Space(len(critic.names), critic.learning.radius, critic.weight_vector)}
     if mid is not None:
         others[MID] = mid.space
-    mirror = None
-    if task.learning.mirrored:
-        mirror = build_mirror(definition, settings.infrared, load_task_repertoire(task, settings), task.behaviours)
-    system = RlaSystem(definition.dimensions, task.learning.radius, weights, others=others, mirror=mirror)
+    repertoire = load_task_repertoire(task, settings)
+    images = build_images(
+        definition,
+        settings.infrared,
+        repertoire,
+        task.behaviours,
+        mirrored=task.learning.mirrored,
+        widths=task.learning.widths,
+    )
+    system = RlaSystem(definition.dimensions, task.learning.radius, weights, others=others, images=images)
     if task.learning.skip_uncertain_lessons:
         system.is_guess = GuessedLessons(system, action_groups(task.repertoire)).includes
     return system

@@ -118,7 +118,7 @@ def _shown(fields: Mapping[str, Field]) -> dict[str, str | int]:
     rla = fields.get("rla")
     if isinstance(rla, int):
         behaviour, level = str(fields.get("behaviour", "")), str(fields.get("level", BASIC))
-        shown["title"] = rla_title(rla, behaviour, level, mirrored=fields.get("mirrored") is True)
+        shown["title"] = rla_title(rla, behaviour, level, str(fields.get("image", "")))
     return shown
 
 

@@ -1,9 +1,9 @@
 """Schema of `config/tasks/*.yaml`."""
 
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, Discriminator, Field, Tag, ValidationInfo, field_validator
+from pydantic import AfterValidator, Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
 from behaviors.policies.policy import PolicySettings
 from behaviors.registry import AnyJudgeSettings, AnyMetricSettings, AnyPolicySettings
@@ -76,11 +76,19 @@ class LearningSettings(Settings):
     neighbours of other presses."""
     mirrored: bool = False
     """Each RLA also answers in the mirror image of its situation, with the mirror image of its action."""
+    widths: tuple[Annotated[float, Field(gt=0.5, lt=2)], ...] = ()
+    """Factors: each RLA also answers where all that its lesson saw is that many times as far away."""
     minimum_action_s: Annotated[float, Field(ge=0, le=5)]
     teacher_delay_s: Annotated[float, Field(ge=0, le=2)] = 1.0
     """Time between a situation and a person's press about it, until four answers have shown the teacher's own."""
     doubt: Annotated[DoubtSettings | None, _NO_DOUBT] = None
     """Doubt, by which the robot asks also inside the radius; None: it asks only outside."""
+
+    @model_validator(mode="after")
+    def _averages_have_no_width(self) -> Self:
+        if self.widths and self.history_weight:
+            raise ValueError("widths need history_weight 0: averages cannot be rendered at another width")
+        return self
 
 
 class PaperDefaults(LearningSettings):
@@ -96,6 +104,7 @@ class PaperDefaults(LearningSettings):
     answers_override_holds: Literal[False] = False
     skip_uncertain_lessons: Literal[False] = False
     mirrored: Literal[False] = False
+    widths: Annotated[tuple[float, ...], Field(max_length=0)] = ()
     minimum_action_s: Annotated[float, Field(ge=0, le=0)] = 0.0
     doubt: Annotated[None, _NO_DOUBT] = None
 

@@ -60,7 +60,7 @@ class CompiledLesson(RobotBatch):
         )
         self._table = Table(
             rows=np.zeros(1, dtype=np.int64),
-            rla_ids=np.zeros(_MOST_RLAS, dtype=np.int64),
+            numbers=np.zeros(_MOST_RLAS, dtype=np.int64),
             conditions=np.zeros((_MOST_RLAS, padded_width(settings.features))),
             radius=np.zeros(_MOST_RLAS),
             action=np.zeros(_MOST_RLAS, dtype=np.int64),
@@ -104,13 +104,13 @@ class CompiledLesson(RobotBatch):
 
     def set_rlas(self, rlas: TaughtRlas) -> None:
         """Replace the RLAs; the next decision may change the action at once. Raises BatchRefusedError for too many."""
-        table, count = self._table, len(rlas.rla_ids)
+        table, count = self._table, len(rlas.numbers)
         if count > _MOST_RLAS:
             raise BatchRefusedError(f"{count} RLAs: a lesson in a batch has at most {_MOST_RLAS}", do="use the CAN bus")
         place = {name: index for index, name in enumerate(self.actions)}
         table.rows[0] = count
         if count:
-            table.rla_ids[:count] = rlas.rla_ids
+            table.numbers[:count] = rlas.numbers
             table.conditions[:count, : self._values] = rlas.conditions
             table.radius[:count] = rlas.radii
             table.action[:count] = [place[name] for name in rlas.actions]

@@ -44,7 +44,7 @@ class Table(NamedTuple):
 
     rows: Integers
     """Number of RLAs, (1,)."""
-    rla_ids: Integers
+    numbers: Integers
     conditions: Floats
     """Weighted conditions, (rows, values)."""
     radius: Floats
@@ -176,6 +176,6 @@ def _choose(robot: Robot, laws: Laws, table: Table, orders: Orders, log: LessonL
         return UNKNOWN
     log.sure[tick] = distance <= SURE_SHARE * table.radius[row]
     if hold_or_change(robot, table.action[row], laws.mind):
-        robot.rla = table.rla_ids[row]
+        robot.rla = table.numbers[row]
         return BY_RLA
     return HELD

@@ -55,7 +55,7 @@ class LessonLog(NamedTuple):
     right: NDArray[np.int8]
     """Index of the action that the policy takes for right."""
     rlas: NDArray[np.int32]
-    """RLA that drives, with a minus sign if it drives as its mirror image; 0 for none."""
+    """Number of the RLA that drives, as in `TaughtRlas`; 0 for none."""
     slow: NDArray[np.bool_]
     """True where a slow lesson slowed the wheels."""
     sure: NDArray[np.bool_]
@@ -70,8 +70,8 @@ class LessonLog(NamedTuple):
 class TaughtRlas(NamedTuple):
     """RLAs that a compiled robot decides by: those of the wanted behaviour, which compete, oldest first."""
 
-    rla_ids: Sequence[int]
-    """Ids, with a minus sign for a mirror image."""
+    numbers: Sequence[int]
+    """A number above 0 for each RLA, and for each of its images."""
     conditions: Sequence[NDArray[np.float64]]
     """Weighted features of each RLA, the recent ones first, and averages if they count, (values,)."""
     radii: Sequence[float]

@@ -183,10 +183,10 @@ class State:
     """Behaviours that lead to the goal, the next one first."""
     plan_says: Annotated[Line, Field(alias="ps")] = ""
     """Status of the plan in a line; empty without goal."""
-    mirrored: Annotated[Truth, Field(alias="mi")] = False
-    """True if the RLA that drives does so as its mirror image."""
-    nearest_mirrored: Annotated[Truth, Field(alias="nm")] = False
-    """True if the nearest RLA is near as its mirror image; `nearest_action` is that image's."""
+    image: Annotated[Word, Field(alias="im")] = ""
+    """Image in which the RLA drives, such as `mirrored`; empty for none."""
+    nearest_image: Annotated[Word, Field(alias="ni")] = ""
+    """Image in which the nearest RLA is near, which `nearest_action` is of."""
     nearest_value: Annotated[Finite | None, Field(alias="nv")] = None
     """Value of the nearest RLA when its action was withdrawn; None if it has its action."""
     progress: Annotated[Progress, Field(alias="pg")] = NO_PROGRESS

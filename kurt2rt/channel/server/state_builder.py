@@ -24,7 +24,7 @@ _LATENESS_EVERY = 20
 class _Nearest(TypedDict):
     nearest: int | None
     nearest_action: str | None
-    nearest_mirrored: bool
+    nearest_image: str
     distance: float
     radius: float
     taught_by: str
@@ -90,7 +90,7 @@ class StateBuilder:
             cause=decision.cause.value,
             action=decision.action,
             rla=decision.rla_id,
-            mirrored=decision.mirrored,
+            image=decision.image,
             question=self._question(record),
             teacher=commands.authority.teacher,
             by_hand=commands.authority.is_manual(record.tick),
@@ -135,7 +135,7 @@ class StateBuilder:
             return _Nearest(
                 nearest=None,
                 nearest_action=None,
-                nearest_mirrored=False,
+                nearest_image="",
                 distance=float("inf"),
                 radius=radius,
                 taught_by="",
@@ -145,7 +145,7 @@ class StateBuilder:
         return _Nearest(
             nearest=match.rla.rla_id,
             nearest_action=match.rla.action,
-            nearest_mirrored=match.rla.mirrored,
+            nearest_image=match.rla.image,
             distance=match.distance,
             radius=match.radius,
             taught_by=match.rla.origin.teacher,

@@ -201,7 +201,7 @@ class BasicLevel:
             if doubts.update(score, alone=self.skip_withdrawn):
                 self._held.stop()
                 return Decision(STANDSTILL, DecisionCause.DOUBT, None, None, match, doubt=score)
-        return Decision(wheel_speeds, cause, action, rla.rla_id, match, answers, doubt=score, mirrored=rla.mirrored)
+        return Decision(wheel_speeds, cause, action, rla.rla_id, match, answers, doubt=score, image=rla.image)
 
     def new_obstacle(self, match: Match, vector: NDArray[np.float64]) -> NewObstacle | None:
         """Return the sensor that makes the robot doubt the nearest RLA in a situation (d,); None if no sensor does."""

@@ -136,11 +136,11 @@ class DoubtMeter:
         self._features = features
         self.actions = frozenset(actions)
         """Names of the actions that drive on."""
-        self._rows: dict[tuple[int, bool], tuple[float, ...]] = {}
-        """Readings ahead in the condition of each RLA that drives on, by its id and whether it is mirrored."""
+        self._rows: dict[tuple[int, str], tuple[float, ...]] = {}
+        """Readings ahead in the condition of each RLA that drives on, by its id and image."""
         self._taught: dict[str, tuple[float, ...]] | None = None
         """Highest taught readings by behaviour; None after the knowledge changed."""
-        self._nearest: tuple[int, bool] | None = None
+        self._nearest: tuple[int, str] | None = None
         """Nearest RLA of the last score since a lesson."""
         self._nearest_limits: tuple[float, ...] = ()
 
@@ -208,7 +208,7 @@ class DoubtMeter:
         return self._nearest_limits
 
     def _read_lessons(self) -> dict[str, tuple[float, ...]]:
-        rows: dict[tuple[int, bool], tuple[float, ...]] = {}
+        rows: dict[tuple[int, str], tuple[float, ...]] = {}
         of: dict[str, list[tuple[float, ...]]] = {}
         for rla in self._system.matched_rlas:
             if rla.action in self.actions:

@@ -243,8 +243,8 @@ class Decision(NamedTuple):
     doubt: float | None = None
     """Doubt of the basic level about the action that drives, or would without it; None if the task sets none, and at
     standstill for another reason."""
-    mirrored: bool = False
-    """True if the RLA that drives answers in the mirror image of its condition."""
+    image: str = ""
+    """Image in which the RLA that drives answers; empty if it does at its condition."""
 
     @property
     def driving(self) -> bool:
@@ -274,9 +274,7 @@ def stopped(decision: Decision, cause: DecisionCause | None) -> Decision:
     """
     if cause is None or (decision.wheel_speeds == STANDSTILL and not decision.driving):
         return decision
-    return decision._replace(
-        wheel_speeds=STANDSTILL, cause=cause, action=None, rla_id=None, answers=False, mirrored=False
-    )
+    return decision._replace(wheel_speeds=STANDSTILL, cause=cause, action=None, rla_id=None, answers=False, image="")
 
 
 class Level(Protocol):

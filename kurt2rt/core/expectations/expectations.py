@@ -117,10 +117,9 @@ class Expectations:
         """Return the expectation of an RLA; None before its first end."""
         return self._learned.get(rla_id)
 
-    def mirrored(self, situation: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the mirror image of a situation (d,) of RLAs that have mirror images."""
-        mirror = self._system.mirror
-        return situation if mirror is None else mirror.situation(situation)
+    def as_taught(self, situation: NDArray[np.float64], image: str) -> NDArray[np.float64]:
+        """Return a situation (d,), met by an RLA in an image, as it would look where the RLA was taught."""
+        return self._system.images[image].as_taught(situation)
 
     def learn(self, end: End) -> Surprise | None:
         """Learn one end of an RLA and return its surprise.

@@ -25,12 +25,12 @@ class BasicTransitionTracker:
     def __init__(self, expectations: Expectations) -> None:
         self.expectations = expectations
         self._driver: int | None = None
-        self._mirrored = False
+        self._image = ""
         self._behaviour = ""
         self._since_tick = 0
 
     def update(
-        self, tick: int, rla_id: int | None, situation: NDArray[np.float64], behaviour: str, *, mirrored: bool
+        self, tick: int, rla_id: int | None, situation: NDArray[np.float64], behaviour: str, image: str = ""
     ) -> Surprise | None:
         """Learn the expectation of the RLA that drove before, if another RLA takes over in this tick.
 
@@ -42,18 +42,17 @@ class BasicTransitionTracker:
             rla_id: driving RLA; None at standstill.
             situation: situation of this tick, shape (d,).
             behaviour: selected taught behaviour.
-            mirrored: whether the driving RLA answers in its mirror image; then its end is learned from the mirror
-                image of the situation.
+            image: in which the driving RLA answers; its end is learned as it would be where it was taught.
         """
-        was_mirrored, self._mirrored = self._mirrored, mirrored
+        before_in, self._image = self._image, image
         if rla_id == self._driver:
             return None
         before, since_tick, same = self._driver, self._since_tick, behaviour == self._behaviour
         self._driver, self._since_tick, self._behaviour = rla_id, tick, behaviour
         if before is None or rla_id is None or not same:
             return None
-        if was_mirrored:
-            situation = self.expectations.mirrored(situation)
+        if before_in:
+            situation = self.expectations.as_taught(situation, before_in)
         return self.expectations.learn(End(before, rla_id, situation, tick - since_tick))
 
     def restart(self) -> None:
@@ -178,7 +177,7 @@ class ExpectationTracker:
         """
         drove = driving and not slow
         rla_id = decision.rla_id if drove else None
-        surprise = self.follow(tick, rla_id, situation.vector, behaviour, mirrored=decision.mirrored)
+        surprise = self.follow(tick, rla_id, situation.vector, behaviour, decision.image)
         following, mid, commanded = self._mid_transitions, self._mid, decision.mid
         if following is None or mid is None or commanded is None:
             return surprise
@@ -187,7 +186,7 @@ class ExpectationTracker:
         return following.update(commanded, mid.vector, driving=driving and counts) or surprise
 
     def follow(
-        self, tick: int, rla_id: int | None, vector: NDArray[np.float64], behaviour: str, *, mirrored: bool
+        self, tick: int, rla_id: int | None, vector: NDArray[np.float64], behaviour: str, image: str
     ) -> Surprise | None:
         """Learn at the basic level from one tick; ticks in which the same RLA drives on may be left out.
 
@@ -196,9 +195,9 @@ class ExpectationTracker:
             rla_id: RLA that drove at full speed; None at standstill.
             vector: situation of the basic level, (d,).
             behaviour: active taught behaviour.
-            mirrored: whether the RLA drove in its mirror image.
+            image: in which the RLA drove; empty for none.
         """
-        return self._basic.update(tick, rla_id, vector, behaviour, mirrored=mirrored)
+        return self._basic.update(tick, rla_id, vector, behaviour, image)
 
     def on_event(self, event: TeachingEvent) -> int | None:
         """Drop the expectation of the RLA whose action an applied event changed.

@@ -3,7 +3,7 @@
 import math
 from bisect import bisect_left
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import NamedTuple
 
@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.core.rla.condition import Condition, Space
+from kurt2rt.core.rla.image import Image
 from kurt2rt.core.rla.matching import ConditionIndex, SymbolIndex
-from kurt2rt.core.rla.mirror import Mirror
 from kurt2rt.core.rla.rla import BASIC, Rla
 
 
@@ -43,7 +43,7 @@ class CandidateIndex:
     def __init__(self, space: Space) -> None:
         self.weights = np.ones(space.dimensions) if space.weights is None else space.weights
         self.rlas: list[Rla] = []
-        """Oldest first, each before its mirror image."""
+        """Oldest first, each before its images."""
         self.index = _make_index(space)
 
     def add(self, rla: Rla) -> None:
@@ -84,15 +84,16 @@ def _make_index(space: Space) -> ConditionIndex | SymbolIndex:
 class ActiveRlas:
     """RLAs of all levels and behaviours. Among those of one level and behaviour the nearest wins."""
 
-    def __init__(self, spaces: Mapping[str, Space], mirror: Mirror | None = None) -> None:
+    def __init__(self, spaces: Mapping[str, Space], images: Sequence[Image] = ()) -> None:
         """Begin without RLAs.
 
         Args:
             spaces: by level; RLAs of other levels are kept, but never matched.
-            mirror: each RLA of the basic level also answers in its mirror image; None: it does not.
+            images: in which each RLA of the basic level answers, too.
         """
         self._spaces = spaces
-        self.mirror = mirror
+        self.images = {image.name: image for image in images}
+        """By name."""
         self._rlas: dict[int, Rla] = {}
         self._indexes: dict[tuple[str, str], CandidateIndex] = {}
         """By level and behaviour."""
@@ -197,30 +198,35 @@ class ActiveRlas:
         )
 
     def candidate_count(self, behaviour: str = "", level: str = BASIC) -> int:
-        """Return the number of RLAs that compete at a level for a behaviour; one and its mirror image count once."""
+        """Return the number of RLAs that compete at a level for a behaviour; one and its images count once."""
         index = self._indexes.get((level, behaviour))
         return 0 if index is None else len({rla.rla_id for rla in index.rlas})
 
     def candidates(self, behaviour: str = "") -> tuple[Rla, ...]:
-        """Return the RLAs of the basic level that compete for a behaviour, mirror images included, oldest first."""
+        """Return the RLAs of the basic level that compete for a behaviour, images included, oldest first."""
         index = self._indexes.get((BASIC, behaviour))
         return () if index is None else tuple(index.rlas)
 
     @property
     def matched_rlas(self) -> tuple[Rla, ...]:
-        """All RLAs of the basic level that are matched, of all behaviours, mirror images included."""
+        """All RLAs of the basic level that are matched, of all behaviours, images included."""
         return tuple(rla for (level, _), index in self._indexes.items() if level == BASIC for rla in index.rlas)
 
     def competitors(self, rla: Rla) -> tuple[Rla, ...]:
         """Return the RLAs of its level and behaviour with an equal condition, itself included, oldest first."""
         group = self._groups.for_rla(rla)
-        if not rla.mirrored:
+        if not rla.image:
             return group
-        return (rla,) if len(group) == 1 else tuple(map(self.mirror_image, group))
+        return (rla,) if len(group) == 1 else tuple(map(self.images[rla.image].rla, group))
+
+    def is_estimate(self, match: Match) -> bool:
+        """Return whether the nearest RLA is near only in an image that was estimated, and not at its very condition."""
+        image = self.images.get(match.rla.image)
+        return image is not None and image.estimated and match.distance > 0.0
 
     def as_taught(self, rla: Rla, action: str) -> str:
-        """Return the action of an RLA that makes a matched one, which may be a mirror image, have `action`."""
-        return self.mirror.name(action) if self.mirror is not None and rla.mirrored else action
+        """Return the action of an RLA that makes a matched one, which may be an image, have `action`."""
+        return self.images[rla.image].name_of(action) if rla.image else action
 
     def neighbours(self, rla: Rla, count: int) -> tuple[Rla, ...]:
         """Return at most `count` RLAs of its level and behaviour with another condition, nearest first; sorts all."""
@@ -262,13 +268,8 @@ class ActiveRlas:
         self._groups.add_or_replace(rla)
 
     def _images(self, rla: Rla) -> tuple[Rla, ...]:
-        """Return what of an RLA is matched: itself, and its mirror image."""
-        return (rla,) if self.mirror is None or rla.level != BASIC else (rla, self.mirror_image(rla))
-
-    def mirror_image(self, rla: Rla) -> Rla:
-        """Return the mirror image of an RLA of a system that has a mirror."""
-        assert self.mirror is not None
-        return self.mirror.rla(rla)
+        """Return what of an RLA is matched: itself, and its images."""
+        return (rla,) if rla.level != BASIC else (rla, *(image.rla(rla) for image in self.images.values()))
 
 
 class CompetitorGroups:

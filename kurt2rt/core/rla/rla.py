@@ -49,11 +49,11 @@ class Origin:
     """Tick of the run in which the command was applied."""
 
 
-def rla_title(rla_id: int, behaviour: str, level: str = BASIC, *, mirrored: bool = False) -> str:
+def rla_title(rla_id: int, behaviour: str, level: str = BASIC, image: str = "") -> str:
     """Return the name of an RLA in texts: RLA 17, RLA 17 of turn_left, mid-level RLA 12, RLA 17 mirrored."""
     kind = {BASIC: "RLA", MID: "mid-level RLA", CRITIC: "appraisal RLA"}.get(level, f"{level} RLA")
-    image = " mirrored" if mirrored else ""
-    return f"{kind} {rla_id}{image} of {behaviour}" if behaviour else f"{kind} {rla_id}{image}"
+    title = f"{kind} {rla_id} {image}" if image else f"{kind} {rla_id}"
+    return f"{title} of {behaviour}" if behaviour else title
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,8 +78,8 @@ class Rla:
     """Taught behaviour that it belongs to: it answers only while that is active. Empty if the task has only one."""
     level: str = BASIC
     """Level of its condition and action."""
-    mirrored: bool = False
-    """True for the mirror image of the RLA of this id, as a match returns it (`Mirror`); never stored."""
+    image: str = ""
+    """Name of the `Image` that this is of the RLA of its id, as a match returns it; never stored, empty for the RLA."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "condition", pack_condition(self.condition))
@@ -87,12 +87,12 @@ class Rla:
     @property
     def title(self) -> str:
         """Name of the RLA in texts: RLA 17, RLA 17 of turn_left, mid-level RLA 12, RLA 17 mirrored."""
-        return rla_title(self.rla_id, self.behaviour, self.level, mirrored=self.mirrored)
+        return rla_title(self.rla_id, self.behaviour, self.level, self.image)
 
     @property
-    def key(self) -> tuple[int, bool]:
-        """Id, and whether it is the mirror image: what tells apart the RLAs that a match compares."""
-        return self.rla_id, self.mirrored
+    def key(self) -> tuple[int, str]:
+        """Id and name of the image: what tells apart the RLAs that a match compares."""
+        return self.rla_id, self.image
 
     @property
     def is_withdrawn(self) -> bool:

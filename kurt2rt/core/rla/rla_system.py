@@ -6,7 +6,7 @@ RLAs of each level and taught behaviour compete among themselves; ids and the hi
 import hashlib
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -31,8 +31,8 @@ from kurt2rt.core.rla.events import (
     SituationNamed,
     TeachingEvent,
 )
+from kurt2rt.core.rla.image import Image
 from kurt2rt.core.rla.lesson_history import LessonHistory
-from kurt2rt.core.rla.mirror import Mirror
 from kurt2rt.core.rla.rla import ASK, BASIC, Origin, Rla
 from kurt2rt.core.rla.statistics import Appraisal
 
@@ -85,7 +85,7 @@ class RlaSystem(ActiveRlas):
         weights: NDArray[np.float64] | None = None,
         *,
         others: Mapping[str, Space] | None = None,
-        mirror: Mirror | None = None,
+        images: Sequence[Image] = (),
     ) -> None:
         """Create an empty system.
 
@@ -95,7 +95,7 @@ class RlaSystem(ActiveRlas):
             weights: weight of each feature in a distance, shape (d,); None: all 1.
             others: spaces of further levels. RLAs of other levels are kept and can be undone, but are never matched:
                 a robot without a critic can use knowledge that has one.
-            mirror: by which each RLA of the basic level answers on both sides; None: on the side of its lesson.
+            images: in which each RLA of the basic level answers, too.
         """
         self.dimensions = dimensions
         self.radius = radius
@@ -104,7 +104,7 @@ class RlaSystem(ActiveRlas):
         """Total duration of the ended sessions, in ticks."""
         self.changes = 0
         """Number of applied events; while it is unchanged, equal situations have equal matches."""
-        super().__init__({**(others or {}), BASIC: Space(dimensions, radius, self.weights)}, mirror)
+        super().__init__({**(others or {}), BASIC: Space(dimensions, radius, self.weights)}, images)
         self._last_id = 0
         self._rewards = Counter[tuple[int, bool]]()
         """Number of standing rewards by RLA id, and whether they are +1."""

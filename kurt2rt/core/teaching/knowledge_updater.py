@@ -55,7 +55,7 @@ class LessonResult(NamedTuple):
 
 
 def rla_outcome(code: ResultCode | RefusalCode, rla: Rla, **fields: Field) -> Outcome:
-    """Return an outcome with an RLA's id, and what else its title needs: behaviour, level, that it is mirrored.
+    """Return an outcome with an RLA's id, and what else its title needs: behaviour, level, image.
 
     `fields`: further fields of the code's text.
     """
@@ -64,8 +64,8 @@ def rla_outcome(code: ResultCode | RefusalCode, rla: Rla, **fields: Field) -> Ou
         named["behaviour"] = rla.behaviour
     if rla.level != BASIC:
         named["level"] = rla.level
-    if rla.mirrored:
-        named["mirrored"] = True
+    if rla.image:
+        named["image"] = rla.image
     return Outcome(code, {**named, **fields})
 
 

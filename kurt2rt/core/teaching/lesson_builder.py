@@ -194,8 +194,11 @@ class LessonBuilder:
     def _corrected(
         self, action: str, nearest: Match | None, context: LessonContext, replace_within_share: float, origin: Origin
     ) -> LessonResult:
-        """Replace the action of the nearest RLA within a share of its radius, else create another one."""
-        if nearest is None or not self._is_within(replace_within_share, nearest):
+        """Replace the action of the nearest RLA within a share of its radius, else create another one.
+
+        What is near at another width only stays right where it was taught, so a correction there creates one.
+        """
+        if nearest is None or not self._is_within(replace_within_share, nearest) or self._system.is_estimate(nearest):
             return self._create(action, context, origin)
         rla = self._corrected_rla(nearest.rla, context)
         if rla.action == action:

@@ -52,8 +52,8 @@ class Question:
     """Question of a robot at a bumper; empty for an unknown situation."""
     doubts: bool = False
     """True if the situation is known, but the robot doubts the action."""
-    mirrored: bool = False
-    """True if the nearest RLA is near as its mirror image, which `action` is of."""
+    image: str = ""
+    """Image in which the nearest RLA is near, and which `action` is of."""
 
     def __str__(self) -> str:
         if self.nearest_rla is None:
@@ -64,7 +64,7 @@ class Question:
             for each in self.differing
             if self.words.differs(each.name, each.here, each.in_condition)
         )
-        nearest = rla_title(self.nearest_rla, self.behaviour, mirrored=self.mirrored)
+        nearest = rla_title(self.nearest_rla, self.behaviour, image=self.image)
         if self.touches:
             return f"{self.touches} {nearest} says {self.action}"
         if self.doubts:
@@ -150,9 +150,7 @@ def ask(
         if differences[i] > 0.0
     )
     rla = match.rla
-    return Question(
-        rla.rla_id, rla.action, match.distance, match.radius, differing, behaviour, words, mirrored=rla.mirrored
-    )
+    return Question(rla.rla_id, rla.action, match.distance, match.radius, differing, behaviour, words, image=rla.image)
 
 
 def ask_in_doubt(question: Question, obstacle: NewObstacle | None, feature_names: tuple[str, ...]) -> Question:

@@ -48,8 +48,10 @@ class LessonMind:
         width, weights = len(runtime.definition.features), runtime.level.system.weights
         self._values = len(weights) if weights[width:].any() else width
         """Values of a situation that the robot compares."""
-        self._conditions: dict[tuple[int, bool], NDArray[np.float64]] = {}
-        """Weighted features of each RLA that was created, and of its mirror image."""
+        self._conditions: dict[tuple[int, str], NDArray[np.float64]] = {}
+        """Weighted features of each RLA that was created, and of its images."""
+        self._images = ("", *runtime.level.system.images)
+        """The robot's number of an RLA is its id times their number, plus the place of its image here."""
         self._known = 0
         """Newest tick that was counted."""
         self._decided = 0
@@ -201,7 +203,7 @@ class LessonMind:
                 weighted = np.array(rla.condition, dtype=np.float64) * system.weights
                 self._conditions[rla.key] = weighted[:values]
         return TaughtRlas(
-            [-rla.rla_id if rla.mirrored else rla.rla_id for rla in rlas],
+            [rla.rla_id * len(self._images) + self._images.index(rla.image) for rla in rlas],
             [self._conditions[rla.key] for rla in rlas],
             [system.radius_of(rla) for rla in rlas],
             [rla.action for rla in rlas],
@@ -238,10 +240,11 @@ class LessonMind:
         ticks.update(tick + after for tick, _ in self._events for after in (0, 1) if tick + after <= last)
         for tick in sorted(ticks):
             place = tick - first
-            drove, expected = int(driving[place + 1]), abs(int(at_full_speed[place + 1])) or None
+            drove, image = divmod(int(driving[place + 1]), len(self._images))
+            expected = int(at_full_speed[place + 1]) // len(self._images) or None
             vector, behaviour = self._recent.situation(tick), self._recent.behaviour(tick)
-            runtime.expectations.follow(tick, expected, vector, behaviour, mirrored=drove < 0)
-            runtime.statistics.count(abs(drove) or None)
+            runtime.expectations.follow(tick, expected, vector, behaviour, self._images[image])
+            runtime.statistics.count(drove or None)
             while self._events and self._events[0][0] == tick:
                 self._drop_counts(self._events.popleft()[1])
 

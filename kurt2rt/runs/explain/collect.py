@@ -174,8 +174,8 @@ class _Reader:
             match = system.match(vector, record.behaviour, include_withdrawn=asking)
         situation = _LevelSituation(self._runtime.definition.names, vector, system.weights)
         driver = self._system.get(decision.rla_id or 0)
-        if driver is not None and decision.mirrored:
-            driver = system.mirror_image(driver)
+        if driver is not None and decision.image:
+            driver = system.images[decision.image].rla(driver)
         return self._level(BASIC, record.behaviour, situation, match, driver)
 
     def mid(self, decision: MidDecision) -> LevelFacts | None:
@@ -260,7 +260,7 @@ class _Reader:
             value=float(self._runtime.reinforcement.value(rla.rla_id)) if rewarded else None,
             asks=rla.is_withdrawn,
             leads=self._leads(rla),
-            mirrored=rla.mirrored,
+            image=rla.image,
         )
 
     def _leads(self, rla: Rla) -> bool:

@@ -7,7 +7,7 @@ from typing import Annotated
 from hal.robot import WheelSpeeds
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import ActiveStop
-from kurt2rt.core.message_fields import Int, Line, Number, OneOf, OrNotFinite, Share, Time, Title, Truth, UpTo
+from kurt2rt.core.message_fields import Int, Line, Number, OneOf, OrNotFinite, Share, Time, Title, Truth, UpTo, Word
 from kurt2rt.core.rla.rla import MID, rla_title
 
 MOST_OTHERS = 12
@@ -60,13 +60,13 @@ class RlaFacts:
     """True if its action was withdrawn."""
     leads: Truth = True
     """True if it is the one that answers among the RLAs on its condition."""
-    mirrored: Truth = False
-    """True if it is compared as its mirror image, by which its action and condition are told."""
+    image: Word = ""
+    """Image in which it is compared, by which its action and condition are told."""
 
     @property
     def name(self) -> str:
         """Return its short name for columns: RLA 17, or RLA 17 mirrored."""
-        return rla_title(self.rla_id, "", mirrored=self.mirrored)
+        return rla_title(self.rla_id, "", image=self.image)
 
 
 @dataclass(frozen=True, slots=True)

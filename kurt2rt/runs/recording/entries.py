@@ -24,9 +24,9 @@ class MatchEntry(NamedTuple):
     known: bool
     runner_up: int | None
     runner_up_distance: float
-    mirrored: bool | None = None
-    """True if the nearest RLA was near as its mirror image; None if not."""
-    runner_up_mirrored: bool | None = None
+    image: str | None = None
+    """Image in which the nearest RLA was near; None for none."""
+    runner_up_image: str | None = None
     """The same of the runner-up."""
 
 
@@ -55,8 +55,8 @@ class DecisionEntry(NamedTuple):
     plan: PlanStep | None
     doubt: float | None
     """None if the task sets no doubt."""
-    mirrored: bool | None = None
-    """True if the RLA that drives drove as its mirror image; None if not."""
+    image: str | None = None
+    """Image in which the RLA that drives drove; None for none."""
 
 
 class OpinionEntry(NamedTuple):
@@ -148,8 +148,8 @@ def decision_entry(decision: Decision) -> DecisionEntry:
     """Return a decision with ids instead of RLAs."""
     mid = decision.mid
     told = None if mid is None else MidEntry._make(mid)._replace(match=match_entry(mid.match))
-    mirrored = decision.mirrored or None
-    return DecisionEntry._make(decision)._replace(match=match_entry(decision.match), mid=told, mirrored=mirrored)
+    image = decision.image or None
+    return DecisionEntry._make(decision)._replace(match=match_entry(decision.match), mid=told, image=image)
 
 
 def match_entry(match: Match | None) -> MatchEntry | None:
@@ -164,8 +164,8 @@ def match_entry(match: Match | None) -> MatchEntry | None:
         known=match.known,
         runner_up=None if other is None else other.rla_id,
         runner_up_distance=match.runner_up_distance,
-        mirrored=rla.mirrored or None,
-        runner_up_mirrored=None if other is None else other.mirrored or None,
+        image=rla.image or None,
+        runner_up_image=None if other is None else other.image or None,
     )
 
 

@@ -70,7 +70,19 @@ _SPEED_CHANGES = (GuardReason.SLEW_LIMIT, GuardReason.SPEED_LIMIT)
 _COPIED = (
     *("tick", "phase", "bumpers", "left_m_s", "right_m_s", "cause", "action", "rla", "nearest", "nearest_action"),
     *("taught_by", "taught_at", "teacher", "by_hand", "rlas", "lessons", "unsaved", "session", "clock_s", "trouble"),
-    *("missed_ticks", "behaviour", "value", "nearest_value", "opinion", "opinion_of", "agreement", "trusted", "role"),
+    *(
+        "missed_ticks",
+        "behaviour",
+        "value",
+        "image",
+        "nearest_image",
+        "nearest_value",
+        "opinion",
+        "opinion_of",
+        "agreement",
+        "trusted",
+        "role",
+    ),
     *("bad_share", "signals_missing", "asks_at", "goal", "plan", "plan_says", "lesson_speed", "speed_share"),
 )
 """Fields of State that the page gets as they are."""

@@ -111,7 +111,7 @@ def build_question(state: State, words: SensorWords = NO_WORDS) -> Question | Mi
         worth=state.nearest_value,
         touches=question_text(state.standing),
         doubts=state.cause == DecisionCause.DOUBT,
-        mirrored=state.nearest_mirrored,
+        image=state.nearest_image,
     )
 
 
@@ -177,7 +177,7 @@ def format_state(state: State) -> str:
     if state.action is not None:
         if state.rla is None:
             return f"{state.action}, by {state.teacher}"
-        return f"{state.action} by {rla_title(state.rla, state.behaviour, mirrored=state.mirrored)}"
+        return f"{state.action} by {rla_title(state.rla, state.behaviour, image=state.image)}"
     return ""
 
 

@@ -314,8 +314,9 @@ def test_open_question_keeps_its_words_while_noise_lets_it_drive(a_lesson: Lesso
     a_lesson.reads("#clock", "60:00")
     assert phone.text("#sentence") == "I don't know this situation, teach me"
     assert phone.text("#gauge-text") == "710 of R 700"
-    a_lesson.show(cause="rla", action="forward", rla=2, distance=0.0, standing=Standing(), lessons=2)
-    a_lesson.reads("#sentence", "RLA 2 ")
+    again = Standing()
+    a_lesson.show(cause="rla", action="forward", rla=2, image="mirrored", distance=0.0, standing=again, lessons=2)
+    a_lesson.reads("#sentence", "RLA 2 mirrored does forward")
     phone.run("delete performance.now;")
 
 

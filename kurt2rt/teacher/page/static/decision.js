@@ -29,12 +29,12 @@ function taught(state) {
 }
 
 // RLA 17, or RLA 17 mirrored: the RLA answers on the other side than it was taught.
-function driver({ rla, mirrored }) {
-  return `RLA ${rla}${mirrored ? " mirrored" : ""}`;
+function driver({ rla, image }) {
+  return `RLA ${rla}${image && ` ${image}`}`;
 }
 
-function nearest({ nearest: rla, nearest_mirrored: mirrored }) {
-  return driver({ rla, mirrored });
+function nearest({ nearest: rla, nearest_image: image }) {
+  return driver({ rla, image });
 }
 
 // Returns whether the robot's own text says why it stands; a question is worded here, with the nearest RLA.

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.decision.decision import ActiveBehaviour
@@ -11,8 +12,8 @@ from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.condition import Condition, Space
-from kurt2rt.core.rla.events import LessonUndone, TeachingEvent
-from kurt2rt.core.rla.mirror import Mirror
+from kurt2rt.core.rla.events import LessonUndone, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.image import Image
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.teaching.authority import ControlAuthority
@@ -22,13 +23,31 @@ from tests.core.rla.helpers import created, deleted, origin, replaced, withdrawn
 from tests.teacher.helpers import correct
 
 LEFT, RIGHT = (9.0, 0.0), (0.0, 9.0)
-MIRROR = Mirror(np.array([1, 0]), {"left": "right", "right": "left", "turn_left": "turn_right"})
+
+
+def _exchanged(situation: NDArray[np.float64]) -> NDArray[np.float64]:
+    return situation[::-1]
+
+
+MIRROR = Image("mirrored", _exchanged, _exchanged, False, {"left": "right", "right": "left", "turn_left": "turn_right"})
+TWICE = Image("x2", lambda situation: situation * 2, lambda situation: situation / 2, True, {})
 
 
 def system_of(*events: TeachingEvent) -> RlaSystem:
-    system = RlaSystem(2, 5.0, mirror=MIRROR)
+    system = RlaSystem(2, 5.0, images=(MIRROR,))
     system.apply_all(events)
     return system
+
+
+def level_of(system: RlaSystem) -> BasicLevel:
+    actions = {name: Counted() for name in ("left", "right", "forward")}
+    return BasicLevel(system, actions, MINIMUM_TICKS, ActiveBehaviour(("",)))
+
+
+def school_of(system: RlaSystem) -> CommandHandler:
+    level = level_of(system)
+    authority = ControlAuthority(level.repertoire, attended=False)
+    return CommandHandler(level, authority, insert_radius_fraction=0.5, handled_command_ids=())
 
 
 def matched(system: RlaSystem, at: Condition, behaviour: str = "") -> Match:
@@ -40,13 +59,13 @@ def matched(system: RlaSystem, at: Condition, behaviour: str = "") -> Match:
 def test_it_answers_on_both_sides_with_one_id_and_counts_once() -> None:
     system = system_of(created(1, LEFT, "left"))
     near, image = matched(system, (9.0, 1.0)), matched(system, (1.0, 9.0))
-    assert (near.rla.rla_id, near.rla.action, near.rla.mirrored, near.distance) == (1, "left", False, 1.0)
-    assert (image.rla.rla_id, image.rla.action, image.rla.mirrored, image.distance) == (1, "right", True, 1.0)
+    assert (near.rla.rla_id, near.rla.action, near.rla.image, near.distance) == (1, "left", "", 1.0)
+    assert (image.rla.rla_id, image.rla.action, image.rla.image, image.distance) == (1, "right", "mirrored", 1.0)
     assert tuple(image.rla.condition) == RIGHT
     assert image.rla.title == "RLA 1 mirrored"
     assert near.runner_up == image.rla
     assert len(system) == system.candidate_count() == 1
-    assert [rla.mirrored for rla in system.candidates()] == [False, True]
+    assert [rla.image for rla in system.candidates()] == ["", "mirrored"]
     assert system.knowledge_hash() == _without_mirror(created(1, LEFT, "left")).knowledge_hash()
 
 
@@ -70,7 +89,7 @@ def test_a_correction_an_undo_and_a_deletion_act_on_both_sides() -> None:
 def test_older_one_wins_and_each_before_its_image() -> None:
     system = system_of(created(1, LEFT, "left"), created(2, RIGHT, "forward"))
     assert matched(system, RIGHT).rla.rla_id == 1
-    assert matched(system, (3.0, 3.0)).rla.mirrored is False
+    assert matched(system, (3.0, 3.0)).rla.image == ""
 
 
 def test_its_image_belongs_to_the_mirrored_behaviour() -> None:
@@ -80,23 +99,29 @@ def test_its_image_belongs_to_the_mirrored_behaviour() -> None:
 
 
 def test_other_levels_have_no_images() -> None:
-    system = RlaSystem(2, 5.0, mirror=MIRROR)
+    system = RlaSystem(2, 5.0, images=(MIRROR,))
     system.apply(created(1, LEFT, "left", level=MID))
     assert system.candidates() == ()
+
+
+@pytest.mark.parametrize(("here", "stays"), [((18.0, 1.0), "forward"), ((18.0, 0.0), "left")])
+def test_a_correction_at_another_width_leaves_the_lesson_of_home_alone(here: Condition, stays: str) -> None:
+    system = RlaSystem(2, 5.0, images=(TWICE,))
+    system.apply(created(1, LEFT, "forward"))
+    situation = Situation(np.array(here), history_frozen=False)
+    _, (event,) = school_of(system).handle(correct("left"), situation, 9)
+    assert matched(system, LEFT).rla.action == stays  # at its very condition no second one would ever win
+    assert matched(system, here).rla.action == "left"
+    assert isinstance(event, RlaCreated) is (stays == "forward")
 
 
 @pytest.mark.parametrize(("at", "opposite"), [(LEFT, "left"), (RIGHT, "right")])
 def test_corrected_image_does_on_its_side_what_was_pressed(at: Condition, opposite: str) -> None:
     system = system_of(created(1, LEFT, "forward"))
-    actions = {name: Counted() for name in ("left", "right", "forward")}
-    level = BasicLevel(system, actions, MINIMUM_TICKS, ActiveBehaviour(("",)))
-    school = CommandHandler(
-        level, ControlAuthority(actions, attended=False), insert_radius_fraction=0.5, handled_command_ids=()
-    )
     here = Situation(np.array(at), history_frozen=False)
-    assert level.decide(here, sensed(), None).mirrored is (at == RIGHT)
+    assert level_of(system).decide(here, sensed(), None).image == ("mirrored" if at == RIGHT else "")
     pressed = {"left": "right", "right": "left"}[opposite]
-    result, (event,) = school.handle(correct(pressed), here, 9)
+    result, (event,) = school_of(system).handle(correct(pressed), here, 9)
     assert matched(system, at).rla.action == pressed
     assert matched(system, tuple(reversed(at))).rla.action == opposite
     assert ("RLA 1 mirrored" in text_of(result.outcome)) is (at == RIGHT)
@@ -108,8 +133,8 @@ def test_end_of_an_image_is_learned_as_its_mirror_image() -> None:
     system = system_of(created(1, LEFT, "left"), created(2, (5.0, 5.0)))
     expectations = Expectations(BASIC, system, Space(2, 5.0), {})
     tracker = BasicTransitionTracker(expectations)
-    tracker.update(1, 1, np.array(RIGHT), "", mirrored=True)
-    tracker.update(9, 2, np.array([3.0, 7.0]), "", mirrored=False)
+    tracker.update(1, 1, np.array(RIGHT), "", "mirrored")
+    tracker.update(9, 2, np.array([3.0, 7.0]), "")
     learned = expectations.get(1)
     assert learned is not None
     assert learned.mean.tolist() == [7.0, 3.0]
@@ -122,3 +147,13 @@ def test_competitors_of_an_image_are_images() -> None:
         (1, "right", RIGHT),
         (2, "left", RIGHT),
     ]
+
+
+def test_image_of_an_image_has_both_names_and_changes() -> None:
+    both = MIRROR.then(TWICE)
+    system = RlaSystem(2, 5.0, images=(MIRROR, TWICE, both))
+    system.apply(created(1, LEFT, "left"))
+    found = matched(system, (0.0, 18.0)).rla
+    assert (found.title, found.action, tuple(found.condition)) == ("RLA 1 mirrored x2", "right", (0.0, 18.0))
+    assert matched(system, (18.0, 0.0)).rla.title == "RLA 1 x2"
+    assert both.as_taught(np.array((0.0, 18.0))).tolist() == list(LEFT)
