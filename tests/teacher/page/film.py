@@ -98,7 +98,6 @@ def film(target: Path = TARGET) -> None:
             opened.wait(lambda: opened.text("#sentence").startswith("I know nothing"), "the robot asks")
             opened.touch("#claim-button")
             opened.wait(lambda: not opened.shows("#claim"), "this page has control")
-            opened.touch("#view")
             taken = Film(opened)
             for _ in range(_ANSWERS):
                 taken.until_asked(3.0)

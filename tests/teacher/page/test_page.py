@@ -320,6 +320,36 @@ def test_open_question_keeps_its_words_while_noise_lets_it_drive(a_lesson: Lesso
     phone.run("delete performance.now;")
 
 
+# The room.
+
+_PAINTED = """
+const [canvas, box] = ["#world-view", "#stage"].map((each) => document.querySelector(each));
+const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+let [painted, red] = [0, 0];
+for (let i = 0; i < data.length; i += 4) {
+  painted += data[i + 3] > 0;
+  red += data[i + 3] > 0 && data[i] - data[i + 1] > 60;
+}
+const ratio = canvas.width / canvas.clientWidth;
+return [painted / ratio ** 2 / (box.clientWidth * box.clientHeight), red];
+"""
+
+
+def test_room_fills_its_box_and_what_lies_ahead_is_red(a_lesson: Lesson) -> None:
+    def painted() -> tuple[float, int]:
+        share, red = a_lesson.phone.run(_PAINTED)
+        return float(share), int(red)
+
+    a_lesson.begin(of_robot(actions=ACTIONS, what="Teach it to follow the wall on its left"), **STANDS)
+    standing, red = painted()
+    a_lesson.show(left_m_s=0.6, right_m_s=0.6, cause="rla", action="forward", rla=1)  # its front sees 0.31 m
+    a_lesson.phone.wait(lambda: painted()[1] > red + 50, "its way into what it sees is red")
+    assert standing > 0.6
+    a_lesson.show(place=None)
+    a_lesson.phone.wait(lambda: a_lesson.phone.shows("#robot-view"), "without a room the robot is shown alone")
+    assert not a_lesson.phone.shows("#world-view")
+
+
 # The mid level.
 
 READY = "return !document.querySelector('.turned, [aria-busy=true]');"

@@ -53,7 +53,7 @@ const files = new Files(sendCommand, showMessage);
 const exam = new Exam(sendCommand);
 const simulation = new Simulation(sendCommand);
 const shownDrive = new Shown((pressId, segments) => sendCommand("/shown", { press_id: pressId, segments }, "teach what was shown"));
-const rewind = new Rewind({ stop, onChange: draw, onOpen: showPath });
+const rewind = new Rewind({ stop, onChange: draw });
 const world = new WorldView($("world-view"), (path, fields) => sendCommand(path, fields), rewind);
 
 let hello = null;
@@ -303,9 +303,6 @@ link.addEventListener("hello", ({ detail }) => {
   simulation.build(hello);
   setText($("robot-name"), `${hello.robot}, task ${hello.task}, at ${page.robot}`);
   setText($("keys-actions"), (hello.mid ? "the ways, or " : "") + hello.actions.slice(0, 9).map((name, i) => `${i + 1} ${words(name)}`).join(", "));
-  $("view").hidden = !hello.simulated;
-  document.body.classList.toggle("simulated", hello.simulated);
-  if (!hello.simulated) showView("robot");
   applyPace();
 });
 
@@ -389,9 +386,14 @@ function announce(state) {
   setText($("announce"), asks ? $("sentence").textContent : "");
 }
 
+// Draws the robot in its room, or alone where no room is known.
 function draw() {
-  drawRobot($("robot-view"), hello, rewind.state ?? link.state, rewind.state ?? decision.worded);
-  world.draw();
+  const asked = rewind.state ?? decision.worded;
+  if (!hello || !link.state || !asked) return; // nothing is worded before the first frame
+  $("robot-view").hidden = world.ready;
+  $("world-view").hidden = !world.ready;
+  if (world.ready) world.draw(asked);
+  else drawRobot($("robot-view"), hello, rewind.state ?? link.state, asked);
 }
 
 function showLink(state) {
@@ -514,27 +516,6 @@ TABS.forEach((name) => {
   });
 });
 
-function showView(name) {
-  for (const each of ["robot", "world"]) $(`${each}-view`).hidden = each !== name;
-  setText($("view"), name === "robot" ? "World" : "Robot");
-  draw();
-}
-let viewBefore = null; // the view to return to after rewind
-
-// The driven path is in the picture of the world; from the robot's own the moment is hard to find.
-function showPath(open) {
-  if (open && hello.simulated) {
-    viewBefore = $("world-view").hidden ? "robot" : "world";
-    showView("world");
-  } else if (!open && viewBefore) {
-    showView(viewBefore);
-    viewBefore = null;
-  }
-}
-$("view").addEventListener("click", () => {
-  viewBefore = null; // the teacher has chosen
-  showView($("robot-view").hidden ? "robot" : "world");
-});
 new ResizeObserver(draw).observe($("stage"));
 onTheme(draw);
 new Bubbles();

@@ -19,13 +19,11 @@ export class Rewind {
   #opened = null; // newest state of driving when rewind was entered; the slider shows driven time before it
   #tickS = 0.01;
   #onChange;
-  #onOpen;
   open = false;
 
-  // `stop` stops the robot; `onChange` draws the page again; `onOpen` is called when rewind is entered or left.
-  constructor({ stop, onChange, onOpen }) {
+  // `stop` stops the robot; `onChange` draws the page again.
+  constructor({ stop, onChange }) {
     this.#onChange = onChange;
-    this.#onOpen = onOpen;
     document.getElementById("rewind").addEventListener("click", () => {
       stop();
       this.enter();
@@ -78,7 +76,6 @@ export class Rewind {
     this.#time.max = 0;
     this.#time.value = 0;
     this.#time.focus();
-    this.#onOpen(true);
     this.#show();
   }
 
@@ -87,7 +84,6 @@ export class Rewind {
     this.open = false;
     this.#bar.hidden = true;
     if (document.activeElement === this.#time) this.#time.blur();
-    this.#onOpen(false);
     this.#onChange();
   }
 

@@ -1,20 +1,22 @@
-// The robot from above: its readings as beams, its bumpers, its wheel speeds.
+// The robot from above: its readings as beams, its bumpers, its wheel speeds, and its way within the next second.
 
-import { between, BLUE, body, DIFFERS, FAINT, FAR, GREY, INK, NEAR, PAPER, RED, SHADE, sheet } from "./canvas.js";
-import { differing, distance, farthest } from "./sensors.js";
+import { between, BLUE, body, DIFFERS, FAINT, FAR, GREY, INK, NEAR, PALE, PAPER, RED, SHADE, sheet } from "./canvas.js";
+import { differing, farthest, rays } from "./sensors.js";
 
 const HALF_BEAM_RAD = 0.09;
 const BEHIND_PX = 12; // from the point that a sensor sees to its text
+const AHEAD_S = 1;
+const POSES = 12; // of the body within that time
 
 // Far is pale blue, near is red; dark enough for the sun.
 function colour(metres) {
   return between(FAR, NEAR, Math.min(1, Math.max(0, (0.45 - metres) / 0.3)));
 }
 
-// Draws the robot; sensors that differ in the question of the state `asked` are marked as in the picture of `kurt2rt why`.
+// Draws the robot alone; sensors that differ in the question of the state `asked` are marked as in the picture of `kurt2rt why`.
 export function drawRobot(canvas, hello, state, asked) {
   const drawn = sheet(canvas);
-  if (!drawn || !hello || !state || !asked) return; // nothing is worded before the first frame
+  if (!drawn) return;
   const { paint, width, height } = drawn;
   const [length, breadth] = hello.outline;
   const margin = 58; // for the wheel speeds
@@ -26,29 +28,81 @@ export function drawRobot(canvas, hello, state, asked) {
 
   paint.save();
   paint.translate(width / 2, height / 2);
-  paint.scale(scale, scale);
-  paint.rotate(-Math.PI / 2); // forward is up
-  paint.scale(1, -1); // y is to the left
+  paint.scale(scale, -scale);
+  paint.rotate(Math.PI / 2); // forward is up
   rings(paint, length, breadth, scale);
-  const marked = differing(asked, hello);
-  hello.sensors.forEach(([name, , x, y, heading], i) => {
-    const metres = distance(hello, state.infrared[i] ?? 0);
-    beam(paint, x, y, (heading * Math.PI) / 180, metres, scale, metres >= farthest(hello), marked.has(name));
-  });
-  body(paint, length, breadth, { fill: PAPER, line: INK, lineWidth: 3 / scale });
-  bumpers(paint, length, breadth, state.bumpers, scale);
+  drawSensing(paint, scale, hello, state, asked);
   paint.restore();
-  hello.sensors.forEach(([name, , x, y, heading], i) => {
-    if (!marked.has(name)) return;
-    const metres = distance(hello, state.infrared[i] ?? 0);
-    const angle = (heading * Math.PI) / 180;
-    const away = metres >= farthest(hello) ? metres * 0.7 : metres + BEHIND_PX / scale;
-    label(paint, width / 2 - (y + away * Math.sin(angle)) * scale, height / 2 - (x + away * Math.cos(angle)) * scale, marked.get(name));
+}
+
+// Draws the robot in its own frame, in metres: its beams, where it drives within the next second, body and bumpers.
+export function drawSensing(paint, scale, hello, state, asked) {
+  const [length, breadth] = hello.outline;
+  const seen = rays(hello, state);
+  const marked = differing(asked, hello);
+  for (const ray of seen) beam(paint, ray, scale, marked.has(ray.name));
+  ahead(paint, hello, state, seen);
+  body(paint, length, breadth, { fill: PALE, line: BLUE, lineWidth: 2.5 / scale });
+  bumpers(paint, length, breadth, state.bumpers, scale);
+  for (const { name, x, y, angle, metres, nothing } of seen) {
+    if (!marked.has(name)) continue;
+    const away = nothing ? metres * 0.7 : metres + BEHIND_PX / scale;
+    label(paint, x + away * Math.cos(angle), y + away * Math.sin(angle), marked.get(name));
+  }
+}
+
+// Paints the ground that the body covers within the next second at the present wheel speeds; red from the moment at
+// which it meets a point that a sensor sees now.
+function ahead(paint, hello, state, seen) {
+  const [length, breadth] = hello.outline;
+  const poses = posesAhead(hello, state);
+  const within = ([x, y], [px, py, angle]) => {
+    const [dx, dy] = [x - px, y - py];
+    const along = dx * Math.cos(angle) + dy * Math.sin(angle);
+    const aside = dy * Math.cos(angle) - dx * Math.sin(angle);
+    return Math.abs(along) < length / 2 && Math.abs(aside) < breadth / 2;
+  };
+  const met = poses.findIndex((pose) => seen.some(({ nothing, end }) => !nothing && within(end, pose)));
+  const free = met < 0 ? poses.length : met;
+  for (const [part, colour] of [[poses.slice(0, free), BLUE], [poses.slice(free), RED]]) {
+    paint.beginPath();
+    for (const [x, y, angle] of part) {
+      paint.save();
+      paint.translate(x, y);
+      paint.rotate(angle);
+      paint.rect(-length / 2, -breadth / 2, length, breadth);
+      paint.restore();
+    }
+    paint.fillStyle = colour;
+    paint.globalAlpha = colour === RED ? 0.4 : 0.2;
+    paint.fill();
+  }
+  paint.globalAlpha = 1;
+}
+
+// Returns the poses [x, y, angle] of the next second in the robot's frame; none of a robot that stands.
+function posesAhead({ track_m: track }, { left_m_s: left, right_m_s: right }) {
+  if (!left && !right) return [];
+  const way = ((left + right) / 2) * (AHEAD_S / POSES);
+  const half = ((right - left) / track / 2) * (AHEAD_S / POSES);
+  let [x, y, angle] = [0, 0, 0];
+  return Array.from({ length: POSES }, () => {
+    angle += half;
+    [x, y] = [x + way * Math.cos(angle), y + way * Math.sin(angle)];
+    angle += half;
+    return [x, y, angle];
   });
 }
 
-// Paints the reading of a marked sensor next to the point that it sees.
-function label(paint, x, y, text) {
+// Paints the reading of a marked sensor next to the point that it sees, upright and inside the picture.
+function label(paint, xM, yM, text) {
+  const { canvas } = paint;
+  const ratio = canvas.width / canvas.clientWidth;
+  const at = paint.getTransform().transformPoint({ x: xM, y: yM });
+  const x = Math.min(canvas.clientWidth - 22, Math.max(22, at.x / ratio));
+  const y = Math.min(canvas.clientHeight - 8, Math.max(10, at.y / ratio));
+  paint.save();
+  paint.setTransform(ratio, 0, 0, ratio, 0, 0);
   paint.font = "700 13px system-ui, sans-serif";
   paint.textAlign = "center";
   paint.lineWidth = 4;
@@ -56,6 +110,7 @@ function label(paint, x, y, text) {
   paint.strokeText(text, x, y + 4);
   paint.fillStyle = DIFFERS;
   paint.fillText(text, x, y + 4);
+  paint.restore();
 }
 
 function rings(paint, length, breadth, scale) {
@@ -68,11 +123,11 @@ function rings(paint, length, breadth, scale) {
   }
 }
 
-function beam(paint, x, y, heading, metres, scale, nothing, marked) {
+function beam(paint, { x, y, angle, metres, nothing }, scale, marked) {
   const paintedIn = marked ? DIFFERS : colour(metres);
   paint.beginPath();
   paint.moveTo(x, y);
-  paint.arc(x, y, metres, heading - HALF_BEAM_RAD, heading + HALF_BEAM_RAD);
+  paint.arc(x, y, metres, angle - HALF_BEAM_RAD, angle + HALF_BEAM_RAD);
   paint.closePath();
   paint.fillStyle = paintedIn;
   paint.globalAlpha = marked ? 0.55 : nothing ? 0.12 : 0.3;
@@ -80,7 +135,7 @@ function beam(paint, x, y, heading, metres, scale, nothing, marked) {
   paint.globalAlpha = 1;
   if (nothing) return;
   paint.beginPath();
-  paint.arc(x, y, metres, heading - HALF_BEAM_RAD * 1.5, heading + HALF_BEAM_RAD * 1.5);
+  paint.arc(x, y, metres, angle - HALF_BEAM_RAD * 1.5, angle + HALF_BEAM_RAD * 1.5);
   paint.strokeStyle = paintedIn;
   paint.lineWidth = 5 / scale;
   paint.lineCap = "butt";
@@ -106,7 +161,7 @@ function wheel(paint, x, height, speed, most, name) {
   paint.textAlign = "center";
   paint.font = "600 15px system-ui, sans-serif";
   paint.fillStyle = INK;
-  const top = 74; // below the view button
+  const top = 74; // below the button
   if (height < top + 80) {
     paint.fillText(speed.toFixed(2), x, height - 8); // no room for a bar
     return;

@@ -4,7 +4,7 @@ const LAW = [86.016, 0.04, 64.4, 0.1, 0.6, 76]; // for a robot without a law
 const MOST_LINES = 3;
 
 // Returns the distance of a reading in metres, from the sensor's face; the farthest if it sees nothing.
-export function distance({ law }, counts) {
+function distance({ law }, counts) {
   const [numerator, offset, bias, near, far, nothing] = law ?? LAW;
   return counts <= nothing ? far : Math.min(far, Math.max(near, numerator / (counts + bias) - offset));
 }
@@ -12,6 +12,16 @@ export function distance({ law }, counts) {
 // Returns the range of the sensors in metres.
 export function farthest({ law }) {
   return (law ?? LAW)[4];
+}
+
+// Returns what each sensor sees, in the robot's frame: a ray from x, y in the direction `angle`, `metres` long, to `end`.
+export function rays(hello, state) {
+  return hello.sensors.map(([name, , x, y, heading], i) => {
+    const metres = distance(hello, state.infrared[i] ?? 0);
+    const angle = (heading * Math.PI) / 180;
+    const end = [x + metres * Math.cos(angle), y + metres * Math.sin(angle)];
+    return { name, x, y, angle, metres, end, nothing: metres >= farthest(hello) };
+  });
 }
 
 // Returns the features of a question with different texts: [name, here, there, place, text here, text there].

@@ -1,12 +1,18 @@
-// The simulated world from above; robot and walls can be dragged to another place.
+// The simulated world from above with the robot in it; robot and walls can be dragged to another place.
 
-import { BLUE, body, DIFFERS, FAR, INK, PALE, PAPER, RED, sheet, TRAIL } from "./canvas.js";
-import { differing, distance, farthest } from "./sensors.js";
+import { BLUE, body, INK, PALE, PAPER, RED, sheet, TRAIL } from "./canvas.js";
+import { drawSensing } from "./robot_view.js";
 import { Trail } from "./trail.js";
 
 const GRAB_PX = 26;
 const CLICK_PX = 8;
 const HANDLE_M = 0.46;
+const MARGIN_PX = 8; // round the whole room
+const FILLED = 0.72; // least share of the box that the room takes
+const TURN_GAIN = 1.2; // a room is turned if the whole of it gets larger by this
+const LEAST_PX_PER_M = 60; // of a large world, so that the robot stays to be seen
+const BUTTON_PX = 54; // at the right end of the box
+const NEW_MS = 10_000; // of the way, as long as rewind reaches
 
 export class WorldView {
   #canvas;
@@ -47,30 +53,51 @@ export class WorldView {
     this.#trail.add(state);
   }
 
-  draw() {
+  // True if there is a room to draw, and a robot in it.
+  get ready() {
+    return Boolean(this.#world && this.#state?.place);
+  }
+
+  // Draws the room and the robot, in rewind that of the picked moment; `asked`: state whose question is shown.
+  draw(asked) {
     const drawn = sheet(this.#canvas);
-    if (!drawn || !this.#world || !this.#hello || !this.#state?.place) return;
+    if (!drawn) return;
     const { paint } = drawn;
-    const view = this.#view(drawn.width, drawn.height);
+    const { scale, turned, x, y, middle } = this.#view(drawn.width, drawn.height);
     paint.save();
-    paint.translate(view.left, view.top);
-    paint.scale(view.scale, -view.scale);
-    this.#room(paint, view.scale);
-    this.#traces(paint, view.scale);
+    paint.translate(...middle);
+    paint.scale(scale, -scale);
+    if (turned) paint.rotate(-Math.PI / 2);
+    paint.translate(-x, -y);
+    this.#room(paint, scale);
+    this.#traces(paint, scale);
     const { place } = this.#state;
-    const past = this.#rewind.state?.place;
-    if (past) this.#robot(paint, view.scale, past.x_m, past.y_m, past.heading_rad, 1);
-    else this.#rays(paint, view.scale, place);
     const dragged = this.#grab?.what === "robot" || this.#grab?.what === "heading";
-    this.#robot(paint, view.scale, place.x_m, place.y_m, place.heading_rad, dragged || past ? 0.25 : 1);
-    if (dragged) this.#robot(paint, view.scale, this.#grab.x, this.#grab.y, this.#grab.heading, 1);
+    if (dragged || this.#rewind.state) this.#ghost(paint, scale, place.x_m, place.y_m, place.heading_rad);
+    if (dragged) this.#ghost(paint, scale, this.#grab.x, this.#grab.y, this.#grab.heading, 1);
+    else this.#robot(paint, scale, this.#rewind.state ?? this.#state, asked);
     paint.restore();
   }
 
+  // Returns scale, turn and middle of the picture: the whole room if that fills the box, else what of it round the
+  // robot fills it. A room is turned if much of a box would stay empty otherwise.
   #view(width, height) {
     const [sizeX, sizeY] = this.#world.size;
-    const scale = Math.min((width - 24) / sizeX, (height - 24) / sizeY);
-    return { scale, left: (width - sizeX * scale) / 2, top: (height + sizeY * scale) / 2 };
+    const [boxX, boxY] = [width - 2 * MARGIN_PX, height - 2 * MARGIN_PX];
+    const whole = (across, up) => Math.min(boxX / across, boxY / up);
+    const turned = whole(sizeY, sizeX) > TURN_GAIN * whole(sizeX, sizeY);
+    const [across, up] = turned ? [sizeY, sizeX] : [sizeX, sizeY];
+    const scale = Math.max(whole(across, up), FILLED * Math.max(width / across, height / up), LEAST_PX_PER_M);
+    const { x_m: x, y_m: y } = (this.#rewind.state ?? this.#state).place;
+    const free = Math.max(0, width - across * scale);
+    return {
+      scale,
+      turned,
+      x: within(x, sizeX, (turned ? height : width) / 2 / scale, MARGIN_PX / scale),
+      y: within(y, sizeY, (turned ? width : height) / 2 / scale, MARGIN_PX / scale),
+      middle: [width / 2 - Math.min(free, BUTTON_PX) / 2, height / 2],
+      ...this.#grab?.seen, // a picture that moves would take what is dragged with it
+    };
   }
 
   #room(paint, scale) {
@@ -99,44 +126,16 @@ export class WorldView {
     return this.#grab?.what === "wall" && this.#grab.name === name ? [this.#grab.dx, this.#grab.dy] : [0, 0];
   }
 
-  // Draws the ray of each sensor; a dot marks the obstacle.
-  #rays(paint, scale, { x_m: x, y_m: y, heading_rad: turned }) {
-    const marked = differing(this.#state, this.#hello);
-    paint.save();
-    paint.translate(x, y);
-    paint.rotate(turned);
-    this.#hello.sensors.forEach(([name, , sx, sy, heading], i) => {
-      const metres = distance(this.#hello, this.#state.infrared[i] ?? 0);
-      const angle = (heading * Math.PI) / 180;
-      const end = [sx + metres * Math.cos(angle), sy + metres * Math.sin(angle)];
-      const nothing = metres >= farthest(this.#hello);
-      paint.strokeStyle = paint.fillStyle = marked.has(name) ? DIFFERS : FAR;
-      paint.lineWidth = (marked.has(name) ? 2.5 : 1) / scale;
-      paint.globalAlpha = marked.has(name) ? 1 : nothing ? 0.25 : 0.6;
-      paint.beginPath();
-      paint.moveTo(sx, sy);
-      paint.lineTo(...end);
-      paint.stroke();
-      if (nothing) return;
-      paint.beginPath();
-      paint.arc(...end, 3 / scale, 0, 7);
-      paint.fill();
-    });
-    paint.restore();
-  }
-
+  // Draws the way of the last minute, its last seconds darker, and the points of questions.
   #traces(paint, scale) {
+    const { points } = this.#trail;
+    const newest = points.at(-1)?.[0];
     paint.strokeStyle = TRAIL;
     paint.lineWidth = 2.5 / scale;
-    paint.beginPath();
-    let previous = null;
-    for (const [, x, y] of this.#trail.points) {
-      // No line to a place where the robot was put.
-      if (previous && Math.hypot(x - previous[0], y - previous[1]) < 0.3) paint.lineTo(x, y);
-      else paint.moveTo(x, y);
-      previous = [x, y];
-    }
-    paint.stroke();
+    paint.globalAlpha = 0.3;
+    way(paint, points);
+    paint.globalAlpha = 1;
+    way(paint, points.filter(([ms]) => newest - ms < NEW_MS));
     paint.fillStyle = RED;
     for (const [x, y] of this.#trail.asked) {
       paint.beginPath();
@@ -145,16 +144,34 @@ export class WorldView {
     }
   }
 
-  #robot(paint, scale, x, y, heading, alpha) {
+  #robot(paint, scale, state, asked) {
+    const { x_m: x, y_m: y, heading_rad: heading } = state.place;
+    paint.save();
+    paint.translate(x, y);
+    paint.rotate(heading);
+    this.#handle(paint, scale);
+    drawSensing(paint, scale, this.#hello, state, asked);
+    paint.restore();
+  }
+
+  // Draws the robot's outline where it is dragged to, or pale where it is.
+  #ghost(paint, scale, x, y, heading, alpha = 0.25) {
     const [length, width] = this.#hello.outline;
     paint.save();
     paint.globalAlpha = alpha;
     paint.translate(x, y);
     paint.rotate(heading);
+    this.#handle(paint, scale);
+    body(paint, length, width, { fill: PALE, line: BLUE, lineWidth: 2.5 / scale });
+    paint.restore();
+  }
+
+  // Draws the handle in the direction of the heading, by which the robot is turned.
+  #handle(paint, scale) {
     paint.strokeStyle = BLUE;
     paint.lineWidth = 2 / scale;
     paint.beginPath();
-    paint.moveTo(length / 2, 0);
+    paint.moveTo(0, 0);
     paint.lineTo(HANDLE_M, 0);
     paint.stroke();
     paint.beginPath();
@@ -162,28 +179,29 @@ export class WorldView {
     paint.fillStyle = PAPER;
     paint.fill();
     paint.stroke();
-    body(paint, length, width, { fill: PALE, line: BLUE, lineWidth: 2.5 / scale });
-    paint.restore();
   }
 
+  // Returns the touched point of the world in metres, and the view.
   #point(event) {
     const box = this.#canvas.getBoundingClientRect();
     const view = this.#view(box.width, box.height);
-    return [(event.clientX - box.left - view.left) / view.scale, -(event.clientY - box.top - view.top) / view.scale, view.scale];
+    const right = (event.clientX - box.left - view.middle[0]) / view.scale;
+    const up = -(event.clientY - box.top - view.middle[1]) / view.scale;
+    return view.turned ? [view.x - up, view.y + right, view] : [view.x + right, view.y + up, view];
   }
 
   #grabAt(event) {
-    if (!this.#world || !this.#state?.place || !event.isPrimary) return;
-    const [x, y, scale] = this.#point(event);
+    if (!this.ready || !event.isPrimary) return;
+    const [x, y, seen] = this.#point(event);
     if (this.#rewind.open) {
       this.#rewind.pick(x, y);
       event.preventDefault();
       return;
     }
     const place = this.#state.place;
-    const reach = GRAB_PX / scale;
+    const reach = GRAB_PX / seen.scale;
     const handle = [place.x_m + HANDLE_M * Math.cos(place.heading_rad), place.y_m + HANDLE_M * Math.sin(place.heading_rad)];
-    const start = { px: event.clientX, py: event.clientY, fromX: x, fromY: y };
+    const start = { px: event.clientX, py: event.clientY, fromX: x, fromY: y, seen };
     const robot = { ...start, x: place.x_m, y: place.y_m, heading: place.heading_rad };
     const toHandle = Math.hypot(x - handle[0], y - handle[1]);
     const toRobot = Math.hypot(x - place.x_m, y - place.y_m);
@@ -222,6 +240,23 @@ export class WorldView {
     if (grab.what === "wall") this.#sendCommand("/world/move", { name: grab.name, dx_m: round(grab.dx), dy_m: round(grab.dy) });
     else this.#sendCommand("/world/place", { x_m: round(grab.x), y_m: round(grab.y), heading_rad: round(grab.heading) });
   }
+}
+
+// Returns the middle of the picture along one side of the room: the robot's place, but no more outside than a margin.
+function within(place, size, half, margin) {
+  return size + 2 * margin <= 2 * half ? size / 2 : Math.min(Math.max(place, half - margin), size + margin - half);
+}
+
+function way(paint, points) {
+  paint.beginPath();
+  let previous = null;
+  for (const [, x, y] of points) {
+    // No line to a place where the robot was put.
+    if (previous && Math.hypot(x - previous[0], y - previous[1]) < 0.3) paint.lineTo(x, y);
+    else paint.moveTo(x, y);
+    previous = [x, y];
+  }
+  paint.stroke();
 }
 
 function polygon(paint, corners) {
