@@ -93,7 +93,7 @@ def test_an_action_without_an_image_is_refused(actions: dict[str, float], proble
         mirror_of(actions=actions)
 
 
-def test_a_wider_place_is_seen_farther_away_by_the_law_of_the_sensors() -> None:
+def test_a_wider_place_is_seen_farther_by_the_law_of_sensors() -> None:
     infrared, names = ROBOT.infrared, BASIC_SITUATION.names
     (image,) = images_at((1.5,))
     situation = np.full(len(names), 200.0)

@@ -105,7 +105,7 @@ def test_other_levels_have_no_images() -> None:
 
 
 @pytest.mark.parametrize(("here", "stays"), [((18.0, 1.0), "forward"), ((18.0, 0.0), "left")])
-def test_a_correction_at_another_width_leaves_the_lesson_of_home_alone(here: Condition, stays: str) -> None:
+def test_correction_at_another_width_leaves_the_lesson_of_home(here: Condition, stays: str) -> None:
     system = RlaSystem(2, 5.0, images=(TWICE,))
     system.apply(created(1, LEFT, "forward"))
     situation = Situation(np.array(here), history_frozen=False)
