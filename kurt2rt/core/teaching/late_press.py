@@ -183,8 +183,8 @@ def _is_late(command: Correct) -> bool:
     return command.late and command.level == BASIC
 
 
-DRIVEN_TICKS = 1200
-"""Ticks of driving that are kept: the ten seconds that the page offers, and what the robot drives until it stands."""
+DRIVEN_TICKS = 6200
+"""Ticks of driving that are kept: the minute that the page offers, and what the robot drives until it stands."""
 CHUNK_TICKS = 100
 """Ticks of driving that are copied at once."""
 
@@ -200,7 +200,7 @@ class _Stretch(NamedTuple):
 
 
 class RewindHistory:
-    """Decisions of the last 12 s of driving, however long the robot stood since, for a teacher who looks back.
+    """Decisions of the last 62 s of driving, however long the robot stood since, for a teacher who looks back.
 
     `Correct` with one of these ticks corrects that moment (rewind on the page).
 

@@ -23,8 +23,8 @@ from kurt2rt.teacher.client.manual_drive import PressHandle
 from kurt2rt.teacher.client.observer_client import ObserverClient
 
 _SEEN_IN_CHARGE_WITHIN_S = 1.0
-_REWIND_S = 10.0
-"""Driving that a robot keeps for late lessons, in s (1000 ticks)."""
+_REWIND_S = 60.0
+"""Driving that a robot keeps for late lessons, in s (6000 ticks)."""
 _PART_EACH_S = 0.008
 
 
@@ -171,10 +171,10 @@ class TeacherClient(ObserverClient):
     async def correct_earlier(self, action: str, seconds: float) -> Answer:
         """Correct what the basic level did `seconds` before it last drove (rewind).
 
-        A robot keeps its last 10 s of driving, however long it has stood since or between.
+        A robot keeps its last minute of driving, however long it has stood since or between.
 
         Raises:
-            ValueError: `seconds` is not between 0 and 10, or no state of a driving robot came yet.
+            ValueError: `seconds` is not between 0 and 60, or no state of a driving robot came yet.
             NoAnswerError: the robot does not answer.
         """
         if not 0.0 <= seconds <= _REWIND_S:

@@ -9,8 +9,8 @@ import anyio
 from kurt2rt.channel.protocol.state import State
 
 _RATE_OVER_S = 1.0
-_DRIVING_STATES = 400
-"""States of a driving robot that are kept: twice as many as come in the ten seconds of driving that it remembers."""
+_DRIVING_STATES = 2400
+"""States of a driving robot that are kept: twice as many as come in the minute of driving that it remembers."""
 
 
 class StateStream:

@@ -27,7 +27,7 @@ an action                answers the robot's question, or corrects what it does
 (just Enter), stop       the robot stands until you type go; it overtakes all other commands
 step ACTION [SECONDS]    one action for half a second, or as long as you say; teaches nothing
 hold ACTION SECONDS      does the action, and is taught it in the situations on the way; then it drives on
-rewind SECONDS ACTION    corrects what it did that long before it stopped (up to 10 s)
+rewind SECONDS ACTION    corrects what it did that long before it stopped (up to 60 s)
 +, -                     reward or punish the action that drives
 lessons                  show the last ten lessons
 health                   late ticks, sensors, bus, disk; faults and their cures

@@ -127,9 +127,9 @@ def test_late_press_answers_a_question_once(driving: Corridor) -> None:
 
 
 def test_late_press_about_forgotten_state_is_refused(driving: Corridor) -> None:
-    for _ in range(1300):
+    for _ in range(6300):
         driving.run(100)
-    assert given(driving, press(driving, age=1400)).code is RefusalCode.TICK_FORGOTTEN
+    assert given(driving, press(driving, age=6400)).code is RefusalCode.TICK_FORGOTTEN
 
 
 def test_blind_robot_takes_a_late_press(driving: Corridor) -> None:

@@ -198,9 +198,9 @@ async def test_correct_earlier_counts_driven_time_alone(client: TeacherClient, r
     assert correction.decision_tick == pictures[0].tick + 42
 
 
-@pytest.mark.parametrize("seconds", [-0.1, 10.1, float("nan")])
+@pytest.mark.parametrize("seconds", [-0.1, 60.1, float("nan")])
 async def test_correct_earlier_beyond_what_is_kept_raises(client: TeacherClient, seconds: float) -> None:
-    with pytest.raises(ValueError, match="10 s"):
+    with pytest.raises(ValueError, match="60 s"):
         await client.correct_earlier("spin_left", seconds)
 
 

@@ -25,7 +25,7 @@ from tests.channel.states import COMMANDS
 from tests.runs.explain.helpers import facts, level, story
 from tests.service.health.reports import ILL, SILENT
 from tests.teacher.page.axe import violations
-from tests.teacher.page.fake_robot import A_HELLO, A_LESSON, FakeRobot
+from tests.teacher.page.fake_robot import A_HELLO, A_LESSON, A_PLACE, FakeRobot
 from tests.teacher.page.lesson import Lesson
 from tests.teacher.page.phone import LAPTOP, PORTRAIT, Phone
 from tests.teacher.page.screens import LEAST_CONTRAST, TEXTS, on_each_screen
@@ -171,6 +171,33 @@ def test_rewind_corrects_the_picked_tick_and_drives_on(past: Lesson) -> None:
     names = [command[0] for command in past.robot.told]
     assert names.index("/correct") < names.index("/resume")
     phone.wait(lambda: phone.shows("#why"), "the present is shown")
+
+
+_MARK = """
+const mark = document.querySelector(`#marks .${arguments[0]}`).getBoundingClientRect();
+return [mark.x + mark.width / 2, mark.y + mark.height / 2];
+"""
+
+
+def test_time_line_shows_a_bump_where_it_was(a_lesson: Lesson) -> None:
+    phone = a_lesson.phone
+    a_lesson.begin(standing=Standing(), tick=DRIVE_FROM, left_m_s=0.3, right_m_s=0.3)
+    for second, touches in enumerate((0, 0, 1, 0, 0, 0, 0), start=1):
+        place = A_PLACE._replace(x_m=second / 10)
+        a_lesson.show(tick=DRIVE_FROM + second * EACH, clock_s=second, bumpers=touches, rla=second, place=place)
+        a_lesson.reads("#clock", f"0:0{second}")
+    phone.turn(LAPTOP)
+    bar = phone.run("return document.querySelector('#rewind-time').getBoundingClientRect().toJSON();")
+    x, y = phone.run(_MARK, "bump")
+    assert abs(x - (bar["right"] - 0.4 * bar["width"])) < 4, "4 s before now, on a bar of 10 s"
+    phone.finger_down(x + 5, y)  # a finger is not that exact
+    phone.finger_up()
+    a_lesson.reads("#rewind-says", "4.0 s before it stood, where it touched something: RLA 3 ")
+    assert a_lesson.robot.told_of("stop"), "a robot that drives is stopped"
+    phone.touch("[data-step='-1']")
+    a_lesson.reads("#rewind-says", "4.0 s before it stood: RLA 3 ")
+    on_each_screen(phone, "24-time-line")
+    phone.touch("#rewind-close")
 
 
 def test_then_go_does_not_lift_a_stop_after_the_touch(past: Lesson) -> None:

@@ -355,7 +355,7 @@ function show() {
   setText($("clock"), clock(state.clock_s));
   setText($("session"), state.session ?? "no session");
   setText($("lesson-count"), String(state.lessons));
-  $("rewind").disabled = !rewind.ready || !inControl();
+  $("rewind").disabled = $("rewind-time").disabled = !rewind.ready || !inControl();
   $("go").disabled = !state.stands.needs_go || state.by_hand || !inControl();
   showLink(state);
   showProgress(state, simulation.measure);
