@@ -13,6 +13,7 @@ from rich.progress import (
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
+from rich.table import Column
 
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.study.pool import PoolProgress
@@ -68,13 +69,14 @@ class OneBar:
 
 @contextmanager
 def one_bar(whole_s: float) -> Iterator[OneBar]:
-    """Yield one bar for all jobs, of `whole_s` seconds of robot time, on standard error."""
+    """Yield one bar for all jobs, of `whole_s` seconds of robot time, on standard error; it goes when they are done."""
     columns = (
-        TextColumn("{task.description}"),
-        BarColumn(bar_width=20),
-        TaskProgressColumn(),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
+        TextColumn("{task.description}", table_column=Column(no_wrap=True, overflow="ellipsis")),
+        BarColumn(bar_width=15),
+        # As wide as they become: else a long name cuts their digits off.
+        TaskProgressColumn(table_column=Column(min_width=4, no_wrap=True)),
+        TimeElapsedColumn(table_column=Column(min_width=7, no_wrap=True)),
+        TimeRemainingColumn(table_column=Column(min_width=7, no_wrap=True)),
     )
-    with Progress(*columns, console=Console(stderr=True)) as progress:
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         yield OneBar(progress, whole_s)

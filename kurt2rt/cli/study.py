@@ -124,7 +124,8 @@ def transfer(options: _Transfer) -> None:
     about = Transfer(task, tuple(places), after, options.seconds, options.there)
     parts, engine = job_parts(robot, options.out), options.requested_engine()
     plan = make_plan(about, parse_seeds(options.seeds), parts, engine=engine)
-    run_study(plan, options, lambda _: tell(plan))
+    command = typed_command("study transfer", options, {"task": options.task, "seeds": options.seeds})
+    run_study(plan, options, lambda _: tell(plan, command))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -183,7 +184,8 @@ def compare(options: _Compare) -> None:
     pupils, after = [Pupil.parse(name) for name in options.learner or PUPILS], options.checkpoint or (10, 20, 40)
     parts, engine = job_parts(robot, options.out), options.requested_engine()
     plan = make_plan(tasks, pupils, parse_seeds(options.seeds), sorted(set(after)), parts, engine=engine)
-    run_study(plan, options, lambda _: tell(plan))
+    command = typed_command("study compare", options, {"seeds": options.seeds})
+    run_study(plan, options, lambda _: tell(plan, command))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -231,7 +233,8 @@ def doubt(options: _Doubt) -> None:
     worlds, responses = tuple(options.world or task.exam.worlds), tuple(options.response or DoubtResponse)
     about = DoubtDrives(task, worlds, responses, options.seconds, options.reposition_after)
     plan = make_plan(about, parse_seeds(options.seeds), options.taught, job_parts(robot, options.out))
-    run_study(plan, options, lambda _: tell(plan))
+    command = typed_command("study doubt", options, {"task": options.task, "seeds": options.seeds})
+    run_study(plan, options, lambda _: tell(plan, command))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -312,8 +315,8 @@ def certify(options: _Certify) -> None:
 
     Each run is a drive of another simulated robot without a teacher. The run's
     number is its seed: sensors, noise, wheel slip, start and world follow from
-    it. Prints probabilities and rates with their 95 % intervals, and writes
-    report.html with pictures of the worst runs.
+    it. Prints probabilities, and writes report.html with their 95 % intervals,
+    rates, and pictures of the worst runs.
 
     Any run can be repeated on the simulated CAN bus, by its seed.
 

@@ -136,10 +136,10 @@ class RunningStudy:
 
 
 @contextmanager
-def hold_study(results: Results, source: str, options: JobOptions) -> Iterator[Executor]:
-    """Hold the folder of a study, and yield the executor of its jobs; at Ctrl-C say that finished jobs are kept.
+def hold_study(results: Results, source: str, options: JobOptions, waves: Waves = ()) -> Iterator[Executor]:
+    """Hold the folder of a study, and yield the executor of its jobs; at Ctrl-C say what goes on with the command.
 
-    `source`: hash of the program's source. `options`: of the command.
+    `source`: hash of the program's source. `options`: of the command. `waves`: its jobs, if they are known before.
 
     Raises:
         StudyError: another run writes to the folder.
@@ -155,9 +155,10 @@ def hold_study(results: Results, source: str, options: JobOptions) -> Iterator[E
     except BaseException as error:
         group = error if isinstance(error, BaseExceptionGroup) else BaseExceptionGroup("", [error])
         if group.subgroup(KeyboardInterrupt) is not None:
+            jobs, left = sum(map(len, waves)), sum(len(results.missing(wave)) for wave in waves)
+            done = f" after {jobs - left} of {jobs} jobs" if jobs else ""
             Console(stderr=True, highlight=False).print(
-                f"kurt2rt: stopped; finished jobs are in {results.folder}, those that ran begin again. "
-                "The same command goes on from there",
+                f"kurt2rt: interrupted{done}; the same command goes on from there ({results.folder})",
                 markup=False,
                 soft_wrap=True,
             )
@@ -170,7 +171,7 @@ def run_study(plan: StudyPlan[AboutT], options: JobOptions, tell: Callable[[Runn
     Raises the errors of `hold_study` and of all jobs, and StudyError if the folder has results of other settings.
     """
     results = plan.results
-    with hold_study(results, plan.jobs[0].made_of.source, options) as executor:
+    with hold_study(results, plan.jobs[0].made_of.source, options, plan.waves) as executor:
         missing_s = missing_time_s(plan.waves, results)
         batch = sum(job.engines.in_batch for job in plan.jobs)
         jobs, witnesses = f"{batch} job{'' if batch == 1 else 's'}", len(plan.witnesses)

@@ -1,9 +1,11 @@
 """Tables on standard output, and how a study ends there."""
 
 import os
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rich.console import Console
+from rich.console import Console, RenderableType
 from rich.text import Text
 
 from kurt2rt.cli.json_output import print_json
@@ -14,6 +16,8 @@ if TYPE_CHECKING:
 
 
 _UNLIMITED = 100_000
+_SCREEN = 19
+"""Lines of a study's results on a terminal, which leaves one of 20 for what it says before."""
 
 
 def console_of() -> Console:
@@ -25,7 +29,10 @@ def console_of() -> Console:
 
 
 def print_told(told: "Told", *, as_json: bool) -> None:
-    """Print the tables of a study, the reasons not to judge it, and the paths of its files; or one JSON document."""
+    """Print the tables of a study, the reasons not to judge it, and the paths of its files; or one JSON document.
+
+    A terminal shows its sentence, its short table and its files alone.
+    """
     if as_json:
         # Cells are texts, as they are printed.
         tables = [
@@ -36,8 +43,33 @@ def print_told(told: "Told", *, as_json: bool) -> None:
     # Not at the top: the simulator is an extra, and this module is imported without it.
     from kurt2rt.experiments.study.table import as_rich
 
+    console = console_of()
+    width = max(map(len, told.files), default=0)
+    files = [f"{what:<{width}}  {path}" for what, path in told.files.items()]
+    if told.sentence and console.is_terminal:
+        for parts in _ever_shorter(told, files):
+            with console.capture() as printed:
+                print_whole(console, *parts)
+            if printed.get().count("\n") <= _SCREEN:
+                break
+        print_whole(console, *parts)
+        return
     reasons = (f"Not judged: {reason}" for reason in told.not_judged)
     to_copy = (Text(line, no_wrap=True) for line in told.lines)
-    width = max(map(len, told.files), default=0)
-    files = (f"{what:<{width}}  {path}" for what, path in told.files.items())
-    print_whole(console_of(), *map(as_rich, told.tables), *reasons, *to_copy, *files)
+    print_whole(console, *map(as_rich, told.tables), *reasons, *to_copy, *files)
+
+
+def _ever_shorter(told: "Told", files: list[str]) -> Iterator[list[RenderableType]]:
+    """Yield the results for a terminal, with all rows of the short table, then with fewer: missed targets stay."""
+    from kurt2rt.experiments.study.table import as_rich
+
+    rows = () if told.short is None else told.short.rows
+    missed_first = sorted(rows, key=lambda row: "MISSED" not in row)
+    note = f"Not judged: {told.not_judged[0]}" if told.not_judged else "" if told.short is None else told.short.note
+    to_copy = [Text(line, no_wrap=True) for line in told.lines[:1]]
+    for count in range(len(rows), -1, -1):
+        kept = rows if count == len(rows) else missed_first[:count]
+        left = f"More rows in the report: {len(rows) - count}." if count < len(rows) else ""
+        text = " ".join(filter(None, (note, left)))
+        table = [] if told.short is None else [as_rich(replace(told.short, rows=tuple(kept), note=text))]
+        yield [told.sentence, *table, *to_copy, *files]

@@ -21,8 +21,9 @@ from kurt2rt.core.task_settings import taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_actions
 from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
 from kurt2rt.experiments.lockstep.lesson import LessonCounts
-from kurt2rt.experiments.study.exam_tables import curriculum_as_data, lesson_table, seeds_tables
+from kurt2rt.experiments.study.exam_tables import curriculum_as_data, lesson_table, seeds_tables, success_text
 from kurt2rt.experiments.study.jobs import require_places
+from kurt2rt.experiments.study.report import tell_with_report
 from kurt2rt.experiments.study.seeds import forget_lost_robots, forget_result, make_plan, read_results
 from kurt2rt.experiments.study.study_plan import EngineRequest
 from kurt2rt.experiments.study.table import Told, as_rich
@@ -142,6 +143,10 @@ def _many_seeds(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
         robots, task = read_results(plan), setup.task
         data = [curriculum_as_data(each.lesson, each.drives, task) for each in robots]
         told = {"task": task.name, "teacher": task.teaching.profile.name, "robots": data}
-        return Told(list(seeds_tables(robots, task)), data=told)
+        tables = list(seeds_tables(robots, task))
+        passed = success_text([drive for each in robots for drive in each.drives])
+        sentence = f"{passed} exams without a teacher were passed, by {len(robots)} robots."
+        result = Told(tables, sentence, tables[2], data=told)
+        return tell_with_report(out, f"KURT2: {task.name} taught to {len(robots)} robots", result, setup.command)
 
     run_study(plan, options, tell)

@@ -90,4 +90,4 @@ def errands(setup: TrainSetup, options: TrainOptions) -> None:
     plan = make_plan(
         setup.task, options.all_seeds, job_parts(setup.robot, options.out or ERRANDS), basic_folder=options.basic
     )
-    run_study(plan, options, lambda _: tell(plan))
+    run_study(plan, options, lambda _: tell(plan, setup.command))

@@ -22,9 +22,18 @@ from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of
 from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of, wilson_interval
 from kurt2rt.experiments.study.jobs import SEED, JobParts, Outcome, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash
-from kurt2rt.experiments.study.report import Section, write_report
+from kurt2rt.experiments.study.report import FOOTER, Section, write_report
 from kurt2rt.experiments.study.study_plan import BusWitnessJob, StudyPlan
-from kurt2rt.experiments.study.table import Column, Table, Told, collisions_text, rate_text, table_of, to_text
+from kurt2rt.experiments.study.table import (
+    Column,
+    Table,
+    Told,
+    collisions_text,
+    of_text,
+    rate_text,
+    table_of,
+    to_text,
+)
 from kurt2rt.knowledge.journal.loading import read_lessons
 from simbridge.contracts.batch import BatchRefusedError
 
@@ -372,6 +381,26 @@ def all_tables(
         )
 
 
+def _short_table(summaries: Sequence[PlaceSummary], has_worst: bool) -> Table:
+    """Return the probabilities without their intervals, for a terminal; a command to copy follows the worst run."""
+
+    def chance(heading: str, name: str) -> Column:
+        return heading, lambda each: f"{getattr(each, name).value:.2%}"
+
+    return table_of(
+        "Share of the runs, by world",
+        summaries,
+        ("world", lambda each: label_of(each.place)),
+        ("runs", lambda each: each.runs),
+        chance("a collision", "collided"),
+        chance("stuck", "stuck"),
+        chance("a question", "asked"),
+        chance("stopped", "stopped"),
+        chance("none", "clean"),
+        note="The worst run once more:" if has_worst else "",
+    )
+
+
 def _format_witnesses(plan: StudyPlan[Certified]) -> str:
     """Return how many runs the batch and the CAN bus drove with equal outcomes, and how many the bus alone."""
     alone = sum(not job.engines.in_batch for job in plan.jobs)
@@ -409,7 +438,8 @@ def tell(plan: StudyPlan[Certified], again: Sequence[BlockJob], words: Sequence[
     (task, knowledge, _, runs), path = plan.about, plan.results.folder / "report.html"
     broken = {run.number: run.broken for run in runs}
     worst = [job.before for job in again if job.before is not None]
-    summaries = list(summarise(plan, read_drives(plan)))
+    drives = read_drives(plan)
+    summaries = list(summarise(plan, drives))
     tables = list(all_tables(plan, summaries, worst))
     commands = []
     for run in worst:
@@ -417,6 +447,11 @@ def tell(plan: StudyPlan[Certified], again: Sequence[BlockJob], words: Sequence[
         exam = ["kurt2rt", "exam", str(knowledge), "--seed", str(run.seed), "--world", run.world]
         commands.append(shlex.join([*exam, *sensor, *words]))
     pictures = list(draw_worst(again, commands))
+    all_runs = summarise_runs(ALL, drives)
+    sentence = (
+        f"{of_text(all_runs.clean.events, len(drives), interval=True)} runs of {task.exam.duration_s:g} s had no "
+        f"collision and no question, and were not stuck or stopped; {all_runs.collided.events} collided."
+    )
     told = (
         f"A taught robot drove {task.exam.duration_s:g} s in simulation, without a teacher, once for each number from "
         f"{runs[0].number} to {runs[-1].number}. A number makes the robot with the spread of its sensors, its noise "
@@ -431,13 +466,13 @@ def tell(plan: StudyPlan[Certified], again: Sequence[BlockJob], words: Sequence[
         path,
         f"KURT2: certificate of a robot that was taught {task.name}",
         (
-            Section("", (told,), tables),
-            *([Section("Worst runs", (driven_again,), pictures=pictures)] if pictures else ()),
+            Section("", (sentence,), pictures=pictures[:1]),
+            Section("Tables", (told,), tables),
+            *([Section("Worst runs", (driven_again,), pictures=pictures[1:])] if pictures else ()),
             Section("How this was made"),
         ),
         command=command,
-        footer="{versions}. Source of what drives and simulates: {source}. The same command with the same versions "
-        "gives the same numbers on the same kind of machine.",
+        footer=FOOTER,
     )
     found = [
         {**each.model_dump(exclude=_LEFT_OUT), "broken": broken[each.seed], "command": word}
@@ -445,4 +480,4 @@ def tell(plan: StudyPlan[Certified], again: Sequence[BlockJob], words: Sequence[
     ]
     data = {"knowledge": knowledge, "task": task.name, "seconds": task.exam.duration_s, "places": summaries}
     data |= {"compared": len(plan.witnesses), "worst": found}
-    return Told(tables, (), {"report": path}, commands, data)
+    return Told(tables, sentence, _short_table(summaries, bool(commands)), (), {"report": path}, commands, data)

@@ -25,10 +25,11 @@ from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import ON_BUS
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
 from kurt2rt.experiments.study.examination import Checkpoint, Examiner, run_checkpoints
-from kurt2rt.experiments.study.figures import save
+from kurt2rt.experiments.study.figures import SavedFigure, save
 from kurt2rt.experiments.study.intervals import wilson_interval
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob, TaughtOutcome, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints
+from kurt2rt.experiments.study.report import tell_with_report
 from kurt2rt.experiments.study.study_plan import EngineRequest, Group, StudyPlan, group_by, read_groups
 from kurt2rt.experiments.study.table import (
     Column,
@@ -239,11 +240,36 @@ Row = Group[tuple[str, Pupil], PupilOutcome]
 """Robots that are one pupil in one task."""
 
 
-def tell(plan: StudyPlan[Compared]) -> Told:
-    """Draw the curves into the folder of the results; return the tables. Raises StudyError, OSError."""
+def tell(plan: StudyPlan[Compared], command: str) -> Told:
+    """Draw the curves and write the report into the folder of the results; return the tables.
+
+    `command`: typed words, without those that belong to the machine alone. Raises StudyError, OSError.
+    """
     rows, figure = read_rows(plan), plan.results.folder / "compare.png"
     draw_curves(rows, plan.about, figure)
-    return Told(list(all_tables(rows, plan)), list(reasons_against_judging(plan.seeds)), {"figure": figure})
+
+    def passed(row: Row) -> str:
+        return of_text(_passed_at(row, -1), len(_judged_of(row)))
+
+    short = table_of(
+        "At the end of the lessons",
+        rows,
+        *_TASK,
+        ("pass", passed),
+        middle("presses", "lesson.presses", ".0f"),
+        total("collisions", "lesson.collisions"),
+        words=2,
+    )
+    (_, (shipped, *others)), *_ = group_by(rows, lambda row: row.of[0])
+    best = max((_passed_at(row, -1) for row in others), default=0)
+    sentence = (
+        f"Of robots taught {shipped.of[0]}, {passed(shipped)} pass with the RLA system, and {best} with the "
+        "best other learner."
+    )
+    tables, reasons = list(all_tables(rows, plan)), list(reasons_against_judging(plan.seeds))
+    told = Told(tables, sentence, short, reasons, {"figure": figure})
+    picture = SavedFigure(figure, "Robots that pass, by presses", "The band is the 95 % interval of the RLA system.")
+    return tell_with_report(plan.results.folder, "KURT2: learners compared", told, command, [picture])
 
 
 def read_rows(plan: StudyPlan[Compared]) -> tuple[Row, ...]:

@@ -18,10 +18,11 @@ from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.study.examination import Checkpoint, Examiner, run_checkpoints
-from kurt2rt.experiments.study.figures import save
+from kurt2rt.experiments.study.figures import SavedFigure, save
 from kurt2rt.experiments.study.intervals import wilson_interval
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob, TaughtOutcome, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints
+from kurt2rt.experiments.study.report import tell_with_report
 from kurt2rt.experiments.study.study_plan import EngineRequest, Group, StudyPlan, read_groups
 from kurt2rt.experiments.study.table import (
     Table,
@@ -269,11 +270,24 @@ def read_study(plan: StudyPlan[Transfer]) -> TransferStudy:
     return TransferStudy(plan, home, read_groups(plan.of(TransferJob), lambda job: job.place, TransferOutcome))
 
 
-def tell(plan: StudyPlan[Transfer]) -> Told:
-    """Draw the curves into the folder of the results; return the tables. Raises StudyError, OSError."""
+def tell(plan: StudyPlan[Transfer], command: str) -> Told:
+    """Draw the curves and write the report into the folder of the results; return the tables.
+
+    `command`: typed words, without those that belong to the machine alone. Raises StudyError, OSError.
+    """
     study, figure = read_study(plan), plan.results.folder / "transfer.png"
     draw_curves(study, figure)
-    return Told(list(all_tables(study)), list(reasons_against_judging(plan.seeds)), {"figure": figure})
+    tables, after = list(all_tables(study)), plan.about.after
+    sentence = "; ".join(
+        f"{of_text(_right_after(each, after[-1]), len(_judged_of(each)), interval=True)} robots are right in "
+        f"{each.of} after {after[-1]} presses there, {_right_after(each, after[0])} after {after[0]}"
+        for each in study.there
+    )
+    told = Told(tables, f"{sentence}.", tables[0], list(reasons_against_judging(plan.seeds)), {"figure": figure})
+    caption = "The band is the 95 % interval."
+    picture = SavedFigure(figure, "Robots that are right in the new world, by presses there", caption)
+    title = f"KURT2: {plan.about.task.name.replace('_', ' ')} in a new world"
+    return tell_with_report(plan.results.folder, title, told, command, [picture])
 
 
 def all_tables(study: TransferStudy) -> Iterator[Table]:
@@ -306,13 +320,12 @@ def verdicts(group: There, study: TransferStudy) -> Iterator[Verdict]:
     presses = study.plan.about.after[-1]
     right, needed = _right_by(group, presses), needed_of(RIGHT_SHARE, len(judged))
     asked, came = f"at least {of_text(needed, len(judged))}", of_text(right, len(judged))
-    yield Verdict(f"right there after at most {presses} presses", asked, came, right >= needed)
+    yield Verdict(f"right there by {presses} presses", asked, came, right >= needed)
     until = _median([each.presses_until_right for each in judged])
     shown = f"{until:g}" if math.isfinite(until) else f"more than {presses}"
     yield Verdict("presses until right, median", f"at most {MOST_PRESSES}", shown, until <= MOST_PRESSES)
     after = sum(each.home_when_right.passed for each in group.rows)
-    came = f"{of_text(after, robots)} (before: {sum(each.home.passed for each in study.home.rows)})"
-    yield Verdict("right at home as soon as right there", of_text(robots, robots), came, after == robots)
+    yield Verdict("right at home then, too", of_text(robots, robots), of_text(after, robots), after == robots)
 
 
 def _curve_table(study: TransferStudy) -> Table:

@@ -23,7 +23,7 @@ def test_learners_are_taught_once_and_compared(kurt2rt: CommandLine) -> None:
     said = kurt2rt(*words, "--json")
     assert said.exit_code == 0, said.err
     document = json.loads(said.out)
-    assert set(document) == {"tables", "not_judged", "figure"}
+    assert set(document) == {"tables", "not_judged", "figure", "report"}
     assert [row[1] for row in document["tables"][0]["rows"]] == ["RLA, as shipped", "5-NN with R"]
     assert Path(document["figure"]).is_file()
     kept = Path("made/results/k-nn/wall_following-3904.json")

@@ -1,5 +1,6 @@
 """Ctrl-C before a command is under way, and in the middle of one: no traceback, exit code 130."""
 
+import re
 import subprocess
 import sys
 
@@ -54,8 +55,7 @@ def test_interrupt_in_a_study_says_how_it_goes_on(
     monkeypatch.setattr("kurt2rt.cli.study_run.run_missing", interrupted)
     said = kurt2rt("study", study, "--quick", "--out", "made")
     assert (said.exit_code, said.out) == (130, "")
-    assert "stopped; finished jobs are in made" in said.err
-    assert "The same command goes on from there" in said.err
+    assert re.search(r"interrupted after 0 of \d+ jobs; the same command goes on from there \(made\)", said.err)
 
 
 def test_interrupt_in_a_command_leaves_no_traceback(kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch) -> None:

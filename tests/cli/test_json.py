@@ -13,7 +13,7 @@ SHORT = ("--set", "teaching.supervised_s=2", "--set", "teaching.corrections_s=1"
 REPORTS: dict[tuple[str, ...], set[str]] = {
     ("demo", *SHORT, "--set", "exam.worlds=[a]"): {"lesson", "task", "exams", "picture", "knowledge"},
     ("train", *SHORT): {"lesson", "task", "exams", "knowledge"},
-    ("train", "--seeds", "7", "--jobs", "1", *SHORT): {"task", "robots", "teacher", "tables", "not_judged"},
+    ("train", "--seeds", "7", "--jobs", "1", *SHORT): {"task", "robots", "teacher", "tables", "not_judged", "report"},
     ("exam", "mine.knowledge", "--world", "a", *SHORT[-2:]): {"knowledge", "seed", "task", "exams"},
     ("why", WALLS, "--at", "1"): {"run", "at_s", "facts", "tips", "difference", "trouble", "picture"},
     ("why", WALLS, "--to", "5", "--picture", "made.svg"): {

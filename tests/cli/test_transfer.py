@@ -19,7 +19,7 @@ def test_robots_are_taught_on_once_and_reported(kurt2rt: CommandLine) -> None:
     said = kurt2rt(*words, "--json")
     assert said.exit_code == 0, said.err
     document = json.loads(said.out)
-    assert set(document) == {"tables", "not_judged", "figure"}
+    assert set(document) == {"tables", "not_judged", "figure", "report"}
     assert [row[:2] for row in document["tables"][-1]["rows"]] == [["1100", "rooms-1100"], ["1101", "rooms-1101"]]
     assert Path(document["figure"]).is_file()
     kept = Path("made/results/rooms-SEED/wall_following-1100.json")

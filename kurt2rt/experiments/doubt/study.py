@@ -21,6 +21,7 @@ from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
 from kurt2rt.experiments.study.intervals import rate_of
 from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints
+from kurt2rt.experiments.study.report import tell_with_report
 from kurt2rt.experiments.study.study_plan import Group, StudyPlan, read_groups
 from kurt2rt.experiments.study.table import Table, Told, of_text, rate_text, table_of
 from kurt2rt.knowledge.journal.loading import read_lessons
@@ -99,16 +100,21 @@ def make_plan(about: DoubtDrives, seeds: Sequence[int], taught: Path, parts: Job
     return StudyPlan(about, tuple(seeds), tuple(jobs))
 
 
-def tell(plan: StudyPlan[DoubtDrives]) -> Told:
-    """Return the quality of doubt that is only told, if it is driven, and the collisions by response.
+def tell(plan: StudyPlan[DoubtDrives], command: str) -> Told:
+    """Return the quality of doubt that is only told, if it is driven, and the collisions by response, with a report.
 
-    Raises StudyError if a result is missing or damaged.
+    `command`: typed words, without those that belong to the machine alone. Raises OSError, and StudyError if a result
+    is missing or damaged.
     """
     found = read_groups(plan.of(DoubtJob), lambda job: job.setup.response, DoubtOutcome)
     groups = [Group(each.of, tuple(outcome.log for outcome in each.rows)) for each in found]
     doubt = plan.about.task.learning.doubt
     tables = [score_table(each.rows, doubt.threshold) for each in groups if doubt and each.of is DoubtResponse.TELLS]
-    return Told([*tables, collision_table(groups, plan.about.set_down_after_s)])
+    collisions = collision_table(groups, plan.about.set_down_after_s)
+    counts = "; ".join(f"{sum(len(log.collisions) for log in each.rows)} if doubt {each.of.value}" for each in groups)
+    drives = len(groups[0].rows)
+    told = Told([*tables, collisions], f"Collisions in {drives} drives without a teacher: {counts}.", collisions)
+    return tell_with_report(plan.results.folder, f"KURT2: doubt in {plan.about.task.name}", told, command)
 
 
 def score_table(logs: Sequence[DriveLog], threshold: float) -> Table:

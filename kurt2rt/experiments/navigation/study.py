@@ -29,9 +29,10 @@ from kurt2rt.experiments.navigation.guided_tour import (
     street_tracker,
 )
 from kurt2rt.experiments.route.study import basic_task_of, streets_of
-from kurt2rt.experiments.study.figures import START, save
+from kurt2rt.experiments.study.figures import START, SavedFigure, save
 from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints
+from kurt2rt.experiments.study.report import tell_with_report
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.study.table import (
     Table,
@@ -166,14 +167,22 @@ _LED = "#b0b0b0"
 _BOX = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": _LED, "linewidth": 0.6}
 
 
-def tell(plan: StudyPlan[TaskSettings]) -> Told:
-    """Draw each robot into the folder of the results; return the tables. Raises StudyError, OSError."""
+def tell(plan: StudyPlan[TaskSettings], command: str) -> Told:
+    """Draw each robot and write the report into the folder of the results; return the tables.
+
+    `command`: typed words, without those that belong to the machine alone. Raises StudyError, OSError.
+    """
     task, outcomes = plan.about, [job.results.read(job, ErrandsOutcome) for job in plan.of(NavigationJob)]
     pictures = [plan.results.folder / f"{task.name}-{outcome.seed}.png" for outcome in outcomes]
     for outcome, path in zip(outcomes, pictures, strict=True):
         _draw_errands(plan.jobs[0].factory, task.exam.worlds[0], outcome, path)
     tables = list(all_tables(outcomes, navigation_settings(task), task.teaching.profile.name))
-    return Told(tables, (), {"pictures": plan.results.folder}, (), {"pictures": pictures})
+    errands = [each for run in outcomes for each in run.errands]
+    good = of_text(sum(run.good(navigation_settings(task).detour_at_most) for run in outcomes), len(errands))
+    sentence = f"{good} goals were reached by a way that is short enough, and never demonstrated as a whole."
+    told = Told(tables, sentence, tables[0], files={"pictures": plan.results.folder}, data={"pictures": pictures})
+    first = SavedFigure(pictures[0], f"Robot {outcomes[0].seed}", "It is the first of the seeds, and was not chosen.")
+    return tell_with_report(plan.results.folder, "KURT2: errands in a town", told, command, [first])
 
 
 def all_tables(

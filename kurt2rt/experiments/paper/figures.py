@@ -90,12 +90,24 @@ def _draw_worlds(factory: SimulationFactory, worlds: Sequence[str], path: Path) 
 
 
 def draw_figures(study: PaperStudy, factory: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
-    """Draw each figure into the folder and yield it: fig2.png, fig4.png, fig6.png, fig7.png, drive-<task>.png.
+    """Draw each figure into the folder and yield it: drive-<task>.png, fig2.png, fig4.png, fig6.png, fig7.png.
 
     Figures of tasks that are not in the study are left out. Raises OSError.
     """
     paper = study.plan.about.paper
     shipped = study.of("shipped")
+    for each in shipped:
+        robot = each.rows[0]
+        path = folder / f"drive-{each.of.task.name}.png"
+        own = [drive for drive in robot.drives if drive.world in each.of.task.exam.worlds]
+        others = [drive for drive in robot.drives if drive not in own]
+        _draw_drives(factory, [*own, *others[:_MOST_UNSEEN]], path)
+        yield SavedFigure(
+            path,
+            each.of.settings.title,
+            f"Exams of the robot of seed {robot.seed}, the first one, after {robot.lesson.teaching_s:g} s of teaching, "
+            f"with {robot.lesson.rlas} RLAs.",
+        )
     if study.growth:
         path = folder / "fig2.png"
         task = next(each.of.task for each in study.experiments if each.of.task.name == study.growth[0].task)
@@ -127,15 +139,3 @@ def draw_figures(study: PaperStudy, factory: SimulationFactory, folder: Path) ->
                 f"{drive.duration_s:.0f} s, {drive.collisions} collisions. It is the first of the seeds, and was not "
                 "chosen.",
             )
-    for each in shipped:
-        robot = each.rows[0]
-        path = folder / f"drive-{each.of.task.name}.png"
-        own = [drive for drive in robot.drives if drive.world in each.of.task.exam.worlds]
-        others = [drive for drive in robot.drives if drive not in own]
-        _draw_drives(factory, [*own, *others[:_MOST_UNSEEN]], path)
-        yield SavedFigure(
-            path,
-            each.of.settings.title,
-            f"Exams of the robot of seed {robot.seed}, the first one, after {robot.lesson.teaching_s:g} s of teaching, "
-            f"with {robot.lesson.rlas} RLAs.",
-        )

@@ -250,6 +250,34 @@ def _behaviour_table(groups: Sequence[Examined], title: str) -> Table:
     )
 
 
+def _passed_text(groups: Sequence[Examined]) -> str:
+    drives = [drive for group in groups for robot in group.rows for drive in robot.drives]
+    return of_text(sum(each.passed for each in drives), sum(each.judged for each in drives))
+
+
+def _short_table(study: PaperStudy, note: str) -> Table:
+    """Return a row for each task in each reading, for a terminal; `note`: how many targets were met."""
+
+    def met(group: Examined) -> str:
+        found = list(verdicts(group))
+        return of_text(sum(each.met for each in found), len(found)) if found else "nothing"
+
+    return table_of(
+        "What was asked, and what came",
+        study.experiments,
+        _TASK,
+        ("settings", lambda each: each.of.reading),
+        middle("RLAs", "lesson.rlas"),
+        ("paper", lambda each: each.of.task.paper.rlas),
+        most("lesson, s", "lesson.teaching_s"),
+        ("paper", lambda each: each.of.task.paper.teaching_time_text),
+        ("exams passed", lambda each: _passed_text([each])),
+        ("asked, met", met),
+        words=2,
+        note=note,
+    )
+
+
 def _growth_table(growth: GrowthStudy) -> Table:
     last_s = min(len(curve) for curves in growth.curves.values() for curve in curves)
     at_s = [time_s for time_s in _GROWTH_AT_S if time_s <= last_s] or [last_s]
@@ -372,13 +400,17 @@ def tell(plan: StudyPlan[PaperExtent], factory: SimulationFactory, command: str)
     )
     unseen = [table for each in study.experiments if (table := unseen_table(each)).rows]
     experiments = [each.of for each in study.experiments]
+    picture, *pictures = draw_figures(study, factory, folder)
+    passed = ", ".join(f"{_passed_text(study.of(each))} with the {each} settings" for each in study.readings)
+    sentence = f"Exams passed without a teacher: {passed}."
     write_report(
         path,
         "KURT2: the paper's basic-level tasks, taught and examined",
         (
+            Section("", (sentence,), pictures=[picture]),
             Section("", (told,)),
             Section("Tables", (SUCCESS_NOTE, *([plain] if len(study.readings) > 1 else ())), tables),
-            Section("Figures", pictures=list(draw_figures(study, factory, folder))),
+            Section("Figures", pictures=pictures),
             *([Section("Generated worlds", (shared,), unseen)] if unseen else ()),
             Section("How this was made", tables=(_learning_table(experiments), _exams_table(experiments))),
         ),
@@ -389,4 +421,4 @@ def tell(plan: StudyPlan[PaperExtent], factory: SimulationFactory, command: str)
         "same numbers on the same kind of machine. One robot's lessons: `kurt2rt knowledge show` with a file of the "
         "folder `knowledge` next to this report.",
     )
-    return Told(tables, reasons, {"report": path})
+    return Told(tables, sentence, _short_table(study, tables[0].note), reasons, {"report": path})

@@ -33,6 +33,7 @@ from kurt2rt.experiments.study.exam_tables import (
     by_world,
     collision_columns,
     measure_column,
+    success_text,
 )
 from kurt2rt.experiments.study.intervals import TEN_MIN_S, Rate, quartiles, rate_of
 from kurt2rt.experiments.study.report import Section, spans, write_report
@@ -345,6 +346,12 @@ def tell(plan: StudyPlan[PhasesTask], command: str) -> Told:
     study, folder, seeds = read_study(plan), plan.results.folder, spans(plan.seeds)
     reasons = list(reasons_not_to_judge(plan))
     tables, path = list(all_tables(study, reasons)), folder / "report.html"
+    taught, at_end = (
+        success_text([exam for robot in study.stages[step].rows for exam in robot.exams])
+        for step in (Step.PHASE_2, Step.PHASE_5)
+    )
+    sentence = f"After answers and corrections {taught} exams are passed without a teacher, after all phases {at_end}."
+    picture, *pictures = draw_figures(study, folder)
     told = (
         "A simulated robot is trained through all phases by a scripted teacher, over the commands that a person uses, "
         f"once per seed ({seeds}): answers (1), corrections (2), rewards (3), a critic of its own is taught (4), and "
@@ -357,9 +364,10 @@ def tell(plan: StudyPlan[PhasesTask], command: str) -> Told:
         path,
         f"KURT2: {plan.about.task.name.replace('_', ' ')}, phases 1 to 5",
         (
+            Section("", (sentence,), pictures=[picture]),
             Section("", (told,)),
             Section("Tables", tables=tables),
-            Section("Figures", pictures=list(draw_figures(study, folder))),
+            Section("Figures", pictures=pictures),
             Section("How this was made", tables=(_settings_table(plan.about.task),)),
         ),
         reasons=reasons,
@@ -368,4 +376,4 @@ def tell(plan: StudyPlan[PhasesTask], command: str) -> Told:
         "same numbers on the same kind of machine. What a robot knew after a step: `kurt2rt knowledge show` with a "
         "file of the folder `knowledge` next to this report.",
     )
-    return Told(tables, reasons, {"report": path})
+    return Told(tables, sentence, tables[0], reasons, {"report": path})

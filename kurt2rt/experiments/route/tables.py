@@ -265,6 +265,10 @@ def tell(plan: StudyPlan[RouteTasks], command: str) -> Told:
     (task, basic), seeds, folder = plan.about, spans(plan.seeds), plan.results.folder
     tables, reasons = list(all_tables(routes, task, plan.seeds)), list(reasons_against_judging(plan.seeds))
     path = folder / "report.html"
+    drives = [robot.drive for each in routes for robot in each.rows]
+    without = of_text(sum(each.passed for each in drives), len(drives), interval=True)
+    sentence = f"{without} robots drove their route without a teacher and without an error."
+    picture, *pictures = draw_figures(routes, plan.jobs[0].factory, folder)
     told = (
         f"A simulated robot is taught the streets ({basic.teaching.duration_s:g} s), and then a fixed route through "
         f"them ({task.teaching.duration_s:g} s): a closed loop that its seed draws, at each of whose junctions one way "
@@ -276,9 +280,10 @@ def tell(plan: StudyPlan[RouteTasks], command: str) -> Told:
         path,
         "KURT2: routes that its mid level was taught",
         (
+            Section("", (sentence,), pictures=[picture]),
             Section("", (told,)),
             Section("Tables", tables=tables),
-            Section("Drives", pictures=list(draw_figures(routes, plan.jobs[0].factory, folder))),
+            Section("Drives", pictures=pictures),
             Section("How this was made"),
         ),
         reasons=reasons,
@@ -286,4 +291,4 @@ def tell(plan: StudyPlan[RouteTasks], command: str) -> Told:
         footer=f"Seeds {seeds}. {{versions}}. Source: {{source}}. One robot's lessons: `kurt2rt knowledge show` with a "
         "file of the folder `knowledge` next to this report.",
     )
-    return Told(tables, reasons, {"report": path})
+    return Told(tables, sentence, tables[0], reasons, {"report": path})

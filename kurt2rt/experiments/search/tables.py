@@ -1,6 +1,7 @@
 """Tables, figure, file of the found settings and report of a search."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from statistics import fmean
 from typing import Any
@@ -206,8 +207,8 @@ def tell(plan: SearchPlan, found: SearchTrials, check: CheckResult, command: str
         files["report"],
         f"KURT2: search for settings of {search.task}",
         (
-            Section("", (verdict_text(plan, check), told), (*tables, space)),
-            Section("Figure", pictures=[figure]),
+            Section("", (verdict_text(plan, check),), pictures=[figure]),
+            Section("Tables", (told,), (*tables, space)),
             Section("How this was made"),
         ),
         command=command,
@@ -215,4 +216,6 @@ def tell(plan: SearchPlan, found: SearchTrials, check: CheckResult, command: str
         "versions has the same trials.",
     )
     better = None if check.found is None else check.found.label
-    return Told(tables, (), files, (), {"better": better, "verdict": verdict_text(plan, check)})
+    short = replace(tables[1], note="")
+    data = {"better": better, "verdict": verdict_text(plan, check)}
+    return Told(tables, verdict_text(plan, check), short, files=files, data=data)

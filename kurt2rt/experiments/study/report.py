@@ -3,6 +3,7 @@
 import base64
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
@@ -11,10 +12,14 @@ import jinja2
 
 from kurt2rt.experiments.study.figures import SavedFigure
 from kurt2rt.experiments.study.provenance import source_hash, versions_with_python
-from kurt2rt.experiments.study.table import Table
+from kurt2rt.experiments.study.table import Table, Told
 from kurt2rt.platform.durable_files import write_durably
 
 _MADE_WITH = ("kurt2rt", "matplotlib", "jinja2")
+FOOTER = (
+    "{versions}. Source: {source}. The same command with the same versions gives the same numbers on the same kind of "
+    "machine."
+)
 
 
 class Section(NamedTuple):
@@ -42,9 +47,9 @@ def write_report(
 ) -> None:
     """Write the report of a study as an HTML page to `path`. Raises OSError.
 
-    The first section comes before the reasons and needs no heading; the last one ends with `command`, without words
-    that belong to the machine alone. `footer`: `{versions}` and `{source}` stand for these. `reasons`: those against
-    judging. `extent`: what is left out.
+    The first section comes before the reasons and needs no heading: its first text is the result in one sentence. The
+    last one ends with `command`, without words that belong to the machine alone. `footer`: `{versions}` and `{source}`
+    stand for these. `reasons`: those against judging. `extent`: what is left out.
     """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("kurt2rt.experiments.study", ""),
@@ -64,6 +69,21 @@ def write_report(
         footer=footer.format(versions=made_with, source=source_hash()),
     )
     write_durably(path, html)
+
+
+def tell_with_report(folder: Path, title: str, told: Told, command: str, pictures: Sequence[SavedFigure] = ()) -> Told:
+    """Write report.html into `folder`, with the sentence, the pictures and all tables of `told`; return it with it.
+
+    `command`: typed words, without those that belong to the machine alone. Raises OSError.
+    """
+    path = folder / "report.html"
+    sections = (
+        Section("", (told.sentence,), pictures=pictures),
+        Section("Tables", tables=told.tables),
+        Section("How this was made"),
+    )
+    write_report(path, title, sections, command=command, footer=FOOTER, reasons=told.not_judged)
+    return replace(told, files={**told.files, "report": path})
 
 
 def spans(seeds: Sequence[int]) -> str:

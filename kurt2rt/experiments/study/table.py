@@ -33,9 +33,13 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """Results that a study shows at its end, in the terminal or as JSON: tables, files and commands."""
+    """Results that a study shows at its end: on a terminal what fits a screen, in a pipe or as JSON all tables."""
 
     tables: Sequence[Table]
+    sentence: str = ""
+    """Result in one sentence, which opens the report, too; empty: a terminal shows all tables."""
+    short: Table | None = None
+    """Table of what was asked and what came, alone on a terminal if there is a sentence."""
     not_judged: Sequence[str] = ()
     """Reasons against judging by its targets."""
     files: Mapping[str, Path] = field(default_factory=dict)

@@ -122,4 +122,4 @@ def test_robot_that_stands_at_its_doubt_collides_no_more_often(tmp_path: Path) -
     assert told.doubt.max() > 1.0
     assert stands.driving.sum() <= told.driving.sum()
     assert len(stands.collisions) <= len(told.collisions)
-    assert [len(table.rows) for table in tell(plan).tables] == [2, 2]
+    assert [len(table.rows) for table in tell(plan, "").tables] == [2, 2]

@@ -58,7 +58,7 @@ def test_streets_and_errands_are_one_robots_knowledge(done: Done) -> None:
 
 
 def test_it_is_told_and_drawn(done: Done) -> None:
-    told = tell(done.plan)
+    told = tell(done.plan, "")
     assert len(told.tables) == 3
     assert done.plan.about.teaching.profile.name in told.tables[1].note
     assert imread(done.plan.results.folder / "errands-1.png").shape[0] > 400

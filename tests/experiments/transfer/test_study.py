@@ -93,12 +93,15 @@ def test_robot_that_was_not_taught_on_drives_at_home_as_before(done: Done) -> No
 
 
 def test_tables_and_figure_show_each_world(done: Done) -> None:
-    told = tell(done.plan)
+    told = tell(done.plan, "kurt2rt study transfer")
     _, curve, teaching, robots = told.tables
     assert [row[:2] for row in curve.rows] == [("rooms-SEED", "taught on"), ("rooms-SEED", "until right")]
     assert len(teaching.rows) == 1
     assert [row[:2] for row in robots.rows] == [("1", "rooms-1")]
     assert imread(told.files["figure"]).shape[0] > 300
+    page = told.files["report"].read_text(encoding="utf-8")
+    # The sentence and the picture first, then all tables.
+    assert page.index(told.sentence) < page.index("<img") < page.index(robots.title)
 
 
 def test_home_is_no_new_world(tmp_path: Path) -> None:

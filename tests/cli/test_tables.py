@@ -1,0 +1,37 @@
+"""The end of a study: what fits a screen on a terminal, and everything in a pipe."""
+
+import io
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from kurt2rt.cli.tables import print_told
+from kurt2rt.experiments.study.table import Told, Verdict, targets_table
+
+VERDICTS = [
+    ((), Verdict(f"exams passed in world {number}", "at least 18 of 20", "20 of 20", number != 37))
+    for number in range(40)
+]
+TARGETS = targets_table(VERDICTS, ())
+TOLD = Told([TARGETS], "39 of 40 robots are right.", TARGETS, files={"report": Path("made/report.html")})
+
+
+@pytest.mark.parametrize("columns", [80, 40])
+def test_a_terminal_gets_at_most_19_lines_and_each_missed_target(monkeypatch: pytest.MonkeyPatch, columns: int) -> None:
+    screen = io.StringIO()
+    console = Console(file=screen, width=columns, force_terminal=True, color_system=None)
+    monkeypatch.setattr("kurt2rt.cli.tables.console_of", lambda: console)
+    print_told(TOLD, as_json=False)
+    lines = screen.getvalue().splitlines()
+    assert len(lines) <= 19
+    assert max(map(len, lines)) <= columns
+    assert lines[0] == TOLD.sentence
+    assert any("MISSED" in line for line in lines)
+    assert "More rows in the report:" in " ".join(lines)
+    assert lines[-1].endswith("made/report.html")
+
+
+def test_a_pipe_gets_all_rows(capsys: pytest.CaptureFixture[str]) -> None:
+    print_told(TOLD, as_json=False)
+    assert capsys.readouterr().out.count("exams passed in world") == 40
