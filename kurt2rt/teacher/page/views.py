@@ -50,7 +50,13 @@ def why_view(number: int, facts: DecisionFacts | None, words: SensorWords = NO_W
         "lines": [*lines, *format_mid_level(facts)],
         "rla": "" if rla is None else rla.title,
         "features": [] if rla is None else _features(level, rla, words),
+        "taught": None if rla is None else {"rla": rla.rla_id, "counts": _readings(level, rla, words)},
     }
+
+
+def _readings(level: LevelFacts, rla: RlaFacts, words: SensorWords) -> dict[str, float]:
+    """Return the readings in an RLA's condition, in counts by the sensor's name."""
+    return {name: value for name, value in zip(level.names, rla.condition, strict=True) if words.is_reading(name)}
 
 
 def _features(level: LevelFacts, rla: RlaFacts, words: SensorWords) -> list[dict[str, Any]]:

@@ -322,11 +322,30 @@ def test_question_is_announced_once_with_places_and_centimetres(a_lesson: Lesson
     phone.wait(lambda: phone.run(said) == "I don't know this situation, teach me", "the question is said")
     words = words_for(load_robot().infrared)
     # The nearest in front is that sensor, and the rear left edge reads the same to the centimetre.
-    assert phone.texts("#differences li") == [
-        words.difference(each.name, each.here, each.in_condition) for each in QUESTION[1:3]
-    ]
+    told = [words.difference(each.name, each.here, each.in_condition) for each in QUESTION[1:3]]
+    assert phone.texts("#differences li") == [line.replace(" within 60 cm", "") for line in told]
     a_lesson.show(cause="rla", action="forward", rla=1, question=(), distance=300.0)
     phone.wait(lambda: phone.run(said) == "", "it asks no more")
+
+
+def test_question_is_drawn_next_to_what_was_taught(a_lesson: Lesson) -> None:
+    phone, sensors = a_lesson.phone, tuple(each.name for each in A_HELLO.sensors)
+    taught = level((200.0,) * 18, story(1, (90.0,) * 18, "forward", 1100.0))
+
+    def prepare(robot: FakeRobot) -> None:
+        robot.decided = facts(replace(taught, names=sensors), "unknown", None)
+
+    a_lesson.begin(prepare)
+    a_lesson.show(**ASKS)
+    phone.wait(lambda: phone.shows("#compare"), "the condition has come")
+    label = phone.run("return document.querySelector('#compare').getAttribute('aria-label');")
+    assert label == "Now, and as taught: front left: 13 cm, was 46 cm; rear centre: nothing, was 15 cm"
+    assert phone.text("#nearest") == "a bit like RLA 1: forward"
+    on_each_screen(phone, "14-drawn")
+    assert len(a_lesson.robot.told_of("why")) == 1, "it is asked of the robot once"
+    a_lesson.show(distance=1200.0, nearest=2, lessons=2)
+    a_lesson.reads("#nearest", "far from anything I know, nearest RLA 2: forward")
+    assert not phone.shows("#compare"), "the robot told of another rule"
 
 
 def test_open_question_keeps_its_words_while_noise_lets_it_drive(a_lesson: Lesson) -> None:
@@ -340,7 +359,7 @@ def test_open_question_keeps_its_words_while_noise_lets_it_drive(a_lesson: Lesso
     a_lesson.show(clock_s=3600.0, cause="rla", action="forward", rla=1, distance=690.0)
     a_lesson.reads("#clock", "60:00")
     assert phone.text("#sentence") == "I don't know this situation, teach me"
-    assert phone.text("#gauge-text") == "710 of R 700"
+    assert phone.text("#nearest") == "a bit like RLA 1: forward"
     again = Standing()
     a_lesson.show(cause="rla", action="forward", rla=2, image="mirrored", distance=0.0, standing=again, lessons=2)
     a_lesson.reads("#sentence", "RLA 2 mirrored does forward")

@@ -3,6 +3,7 @@
 import { ActionPad, STAND, WITHDRAWN, words } from "./actions.js";
 import { Bubbles } from "./bubbles.js";
 import { onTheme } from "./canvas.js";
+import { Compare } from "./compare.js";
 import { Critic, CRITIC } from "./critic.js";
 import { Decision, setText } from "./decision.js";
 import { Exam } from "./exam.js";
@@ -48,6 +49,7 @@ const goals = new Goals(sendCommand);
 const critic = new Critic(appraise);
 const health = new Health();
 const explanation = new Explanation(link);
+const compare = new Compare(link);
 const session = new SessionPanel(sendCommand);
 const files = new Files(sendCommand, showMessage);
 const exam = new Exam(sendCommand);
@@ -360,6 +362,7 @@ function show() {
   showLink(state);
   showProgress(state, simulation.measure);
   decision.show(state, hello);
+  compare.update(decision.worded);
   announce(state);
   actionPad.show(state);
   shownDrive.show(state, page.device);
@@ -392,6 +395,7 @@ function draw() {
   if (!hello || !link.state || !asked) return; // nothing is worded before the first frame
   $("robot-view").hidden = world.ready;
   $("world-view").hidden = !world.ready;
+  compare.draw(hello, link.state, asked);
   if (world.ready) world.draw(asked);
   else drawRobot($("robot-view"), hello, rewind.state ?? link.state, asked);
 }

@@ -4,7 +4,6 @@ import { between, BLUE, body, DIFFERS, FAINT, FAR, GREY, INK, NEAR, PALE, PAPER,
 import { differing, farthest, rays } from "./sensors.js";
 
 const HALF_BEAM_RAD = 0.09;
-const BEHIND_PX = 12; // from the point that a sensor sees to its text
 const AHEAD_S = 1;
 const POSES = 12; // of the body within that time
 
@@ -44,11 +43,6 @@ export function drawSensing(paint, scale, hello, state, asked) {
   ahead(paint, hello, state, seen);
   body(paint, length, breadth, { fill: PALE, line: BLUE, lineWidth: 2.5 / scale });
   bumpers(paint, length, breadth, state.bumpers, scale);
-  for (const { name, x, y, angle, metres, nothing } of seen) {
-    if (!marked.has(name)) continue;
-    const away = nothing ? metres * 0.7 : metres + BEHIND_PX / scale;
-    label(paint, x + away * Math.cos(angle), y + away * Math.sin(angle), marked.get(name));
-  }
 }
 
 // Paints the ground that the body covers within the next second at the present wheel speeds; red from the moment at
@@ -92,25 +86,6 @@ function posesAhead({ track_m: track }, { left_m_s: left, right_m_s: right }) {
     angle += half;
     return [x, y, angle];
   });
-}
-
-// Paints the reading of a marked sensor next to the point that it sees, upright and inside the picture.
-function label(paint, xM, yM, text) {
-  const { canvas } = paint;
-  const ratio = canvas.width / canvas.clientWidth;
-  const at = paint.getTransform().transformPoint({ x: xM, y: yM });
-  const x = Math.min(canvas.clientWidth - 22, Math.max(22, at.x / ratio));
-  const y = Math.min(canvas.clientHeight - 8, Math.max(10, at.y / ratio));
-  paint.save();
-  paint.setTransform(ratio, 0, 0, ratio, 0, 0);
-  paint.font = "700 13px system-ui, sans-serif";
-  paint.textAlign = "center";
-  paint.lineWidth = 4;
-  paint.strokeStyle = PAPER;
-  paint.strokeText(text, x, y + 4);
-  paint.fillStyle = DIFFERS;
-  paint.fillText(text, x, y + 4);
-  paint.restore();
 }
 
 function rings(paint, length, breadth, scale) {

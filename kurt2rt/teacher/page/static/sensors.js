@@ -32,11 +32,11 @@ function visible(question) {
   return question.filter((line) => line[4] !== line[5] && !again(line)).slice(0, MOST_LINES);
 }
 
-// Returns the differing sensors while the robot asks: their texts by name.
+// Returns the names of the differing sensors while the robot asks.
 export function differing(state, hello) {
   const names = new Set(hello.sensors.map(([name]) => name));
   const asks = ["unknown", "doubt"].includes(state.cause) ? visible(state.question) : [];
-  return new Map(asks.filter(([name]) => names.has(name)).map(([name, , , , here]) => [name, here.replace(/ within.*| or less/, "")]));
+  return new Set(asks.map(([name]) => name).filter((name) => names.has(name)));
 }
 
 // Returns a list with a line for each feature, such as "front left: 13 cm, was 40 cm".
@@ -47,7 +47,7 @@ export function differenceList(question) {
       const line = document.createElement("li");
       const where = document.createElement("b");
       where.textContent = place;
-      line.append(where, `: ${here}, was ${there}`);
+      line.append(where, `: ${here}, was ${there}`.replaceAll(/ within [^,]*/g, ""));
       return line;
     }),
   );

@@ -12,7 +12,7 @@ const FILLED = 0.72; // least share of the box that the room takes
 const TURN_GAIN = 1.2; // a room is turned if the whole of it gets larger by this
 const LEAST_PX_PER_M = 60; // of a large world, so that the robot stays to be seen
 const BUTTON_PX = 54; // at the right end of the box
-const NEW_MS = 10_000; // of the way, as long as rewind reaches
+const NEW_MS = 10_000; // of the way, drawn darker
 
 export class WorldView {
   #canvas;
