@@ -25,7 +25,7 @@ class StopReason(TextCode):
     NO_TEACHER = ("no teacher", "no teacher is there")
     TEACHER_NOT_YET = ("teacher not yet", "{name} is not there yet")
     """The robot drove, and its new teacher has sent no sign of presence yet."""
-    LINK_LOST = ("link lost", "lost the link to {name}")
+    LINK_LOST = ("link lost", "heard nothing from {name}")
     """The robot drove, and messages of its teacher ceased."""
     FALLS_BEHIND = (
         "falls behind",
@@ -245,6 +245,8 @@ class StandingWatch:
         return held if self._held_ticks >= HELD_TICKS else None
 
 
+_SHORTEST_STALL_S = 0.05
+"""A shorter stall would be told as 0.0 s; the robot time of a simulation does not stall at all."""
 GO_ON_PAGE = "GO lets it drive on"
 GO_IN_TERMINAL = "Type go to let it drive on"
 
@@ -263,7 +265,7 @@ def stop_text(stop: ActiveStop | None) -> str:
 
 def reason_text(standing: Standing) -> str:
     """Return the reason in a few words that continue "stands: "; empty while the robot drives."""
-    stall = "" if standing.stall_s is None else f" for {standing.stall_s:.1f} s"
+    stall = f" for {standing.stall_s:.1f} s" if (standing.stall_s or 0.0) >= _SHORTEST_STALL_S else ""
     return standing.reason.text.format(
         says=standing.says or standing.reason, stop=stop_text(standing.stop) or standing.reason, stall=stall
     )

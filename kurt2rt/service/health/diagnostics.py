@@ -15,8 +15,6 @@ LATELY_S = 60
 """Window over which counters are judged, in s; one report per second."""
 LATE_SHARE = 0.2
 """Fraction of a period by which a tick is late, 2 ms at 100 Hz."""
-TOLERATED_SHARE = 0.1
-"""Fraction of missed ticks in the last minute that is no trouble if the robot stalls with the program."""
 SLOW_WRITE_S = 0.5
 LITTLE_ROOM_BYTES = 500 * 10**6
 NO_ROOM_BYTES = 50 * 10**6
@@ -89,7 +87,7 @@ class Diagnostics:
     """Finder of the troubles in each health report, which remembers since when each one lasts."""
 
     def __init__(self, settings: RobotSettings, *, tolerates_stalls: bool = False) -> None:
-        """`tolerates_stalls`: whether the robot stalls with this program, so that late ticks are no trouble."""
+        """`tolerates_stalls`: whether the robot stalls with this program, so that no tick is late or missed for it."""
         self._settings = settings
         self._tolerates_stalls = tolerates_stalls
         self._since_s: dict[tuple[str, str], float] = {}
@@ -137,13 +135,12 @@ class Diagnostics:
             yield _Found(_SENSOR_FAULTS[sensor.fault], False, sensor.title, (sensor.counts,))
 
     def _of_ticks(self, punctuality: TickLateness) -> Iterator[_Found]:
-        lately_ticks = min(punctuality.ticks, round(LATELY_S / self._settings.cycle_s))
-        if self._tolerates_stalls and punctuality.missed_lately <= TOLERATED_SHARE * lately_ticks:
+        if self._tolerates_stalls:
             return
         if punctuality.missed_lately:
             yield _Found(TroubleCode.TICKS_MISSED, numbers=(punctuality.missed_lately, punctuality.missed))
         bound_ms = LATE_SHARE * self._settings.cycle_s * 1000
-        if punctuality.p99_ms > bound_ms and not self._tolerates_stalls:
+        if punctuality.p99_ms > bound_ms:
             yield _Found(TroubleCode.TICKS_LATE, numbers=(punctuality.p99_ms,))
 
 

@@ -63,6 +63,10 @@ class Lesson:
         """Wait until an element has a text."""
         self.phone.wait(lambda: text in self.phone.text(selector), f"{selector} says {text!r}")
 
+    def reaches(self, clock: str) -> None:
+        """Wait until the page has a state whose clock it shows as `clock`."""
+        self.phone.wait(lambda: self.phone.run(_SHOWN)[0] == clock, f"the state of {clock}")
+
     def told(self, name: str) -> list[object]:
         """Return the first argument of each call of the robot."""
         return [each[1] for each in self.robot.told if each[0] == name]

@@ -42,7 +42,8 @@ def _teach(phone: Phone, room: Classroom) -> None:
     phone.touch("#claim-button")
     phone.wait(lambda: not phone.shows("#claim"), "this page has control")
     phone.run(_SLOW)
-    phone.wait(lambda: phone.text("#phase-name") == "slow, 60 %", "lessons are slow")
+    slow = "return document.querySelector('#phase').textContent.includes('slow, 60 %');"
+    phone.wait(lambda: phone.run(slow), "lessons are slow")
     phone.touch("[data-action=along_left_wall]")
     phone.wait(lambda: phone.text("#sentence").startswith("RLA 1 "), "it drives")
     phone.pass_time(0.5)

@@ -25,7 +25,7 @@ from tests.channel.states import COMMANDS
 from tests.runs.explain.helpers import facts, level, story
 from tests.service.health.reports import ILL, SILENT
 from tests.teacher.page.axe import violations
-from tests.teacher.page.fake_robot import A_HELLO, A_LESSON, A_PLACE, FakeRobot
+from tests.teacher.page.fake_robot import A_HELLO, A_LESSON, A_PLACE, A_SIMULATION, FakeRobot
 from tests.teacher.page.lesson import Lesson
 from tests.teacher.page.phone import LAPTOP, PORTRAIT, Phone
 from tests.teacher.page.screens import LEAST_CONTRAST, TEXTS, on_each_screen
@@ -95,7 +95,7 @@ def test_lessons_of_a_hold_are_counted_and_undone_together(a_lesson: Lesson) -> 
     phone.finger_up()
     a_lesson.show(hold=held._replace(lessons=4, on=False), by_hand=False)
     a_lesson.reads("#said", "spin left was held, lessons: 4")
-    phone.touch("#undo-hold")
+    phone.touch("#offer")
     phone.wait(lambda: a_lesson.told("/undo") == ["local-hold-7"], "all are undone")
 
 
@@ -149,7 +149,7 @@ def past(a_lesson: Lesson) -> Lesson:
     a_lesson.begin(standing=Standing(), tick=DRIVE_FROM, left_m_s=0.3, right_m_s=0.3)
     for tick in range(DRIVE_FROM + EACH, DRIVE_TO + 1, EACH):
         a_lesson.show(tick=tick, rla=tick // EACH, clock_s=tick / EACH)
-        a_lesson.reads("#clock", f"0:{tick // EACH}")
+        a_lesson.reaches(f"0:{tick // EACH}")
     a_lesson.phone.touch("#rewind")
     a_lesson.phone.wait(lambda: a_lesson.phone.shows("#rewind-bar"), "the past is shown")
     a_lesson.show(left_m_s=0.0, right_m_s=0.0)
@@ -185,7 +185,7 @@ def test_time_line_shows_a_bump_where_it_was(a_lesson: Lesson) -> None:
     for second, touches in enumerate((0, 0, 1, 0, 0, 0, 0), start=1):
         place = A_PLACE._replace(x_m=second / 10)
         a_lesson.show(tick=DRIVE_FROM + second * EACH, clock_s=second, bumpers=touches, rla=second, place=place)
-        a_lesson.reads("#clock", f"0:0{second}")
+        a_lesson.reaches(f"0:0{second}")
     phone.turn(LAPTOP)
     bar = phone.run("return document.querySelector('#rewind-time').getBoundingClientRect().toJSON();")
     x, y = phone.run(_MARK, "bump")
@@ -357,7 +357,7 @@ def test_open_question_keeps_its_words_while_noise_lets_it_drive(a_lesson: Lesso
     a_lesson.reads("#sentence", "I don't know this situation, teach me")
     phone.run("window.heldMs += 1000;")
     a_lesson.show(clock_s=3600.0, cause="rla", action="forward", rla=1, distance=690.0)
-    a_lesson.reads("#clock", "60:00")
+    a_lesson.reaches("60:00")
     assert phone.text("#sentence") == "I don't know this situation, teach me"
     assert phone.text("#nearest") == "a bit like RLA 1: forward"
     again = Standing()
@@ -508,6 +508,7 @@ def test_faults_are_coloured_with_time_and_cure(a_lesson: Lesson) -> None:
     a_lesson.reads("#health", "sensors silent, …")
     assert phone.run("return document.querySelector('#health').className;") == "warns urgent"
     phone.touch("#link")
+    a_lesson.reads("#phase", "1, Supervised")
     a_lesson.reads("#health-troubles", f"{SILENT.what} (for 2 s): {SILENT.to_do}")
     on_each_screen(phone, "12-health")
     phone.touch("#stop")  # which is never covered
@@ -599,7 +600,7 @@ def test_simulation_and_speed_of_lessons_are_chosen_in_more(a_lesson: Lesson) ->
     choose(phone, "#lesson-speed", "60")
     phone.wait(lambda: a_lesson.told("/lesson/speed") == [60], "the robot is told")
     a_lesson.show(lesson_speed=0.35)
-    a_lesson.reads("#phase-name", "slow, 35 %")
+    phone.wait(lambda: "slow, 35 %" in phone.run("return document.querySelector('#phase').textContent;"), "it says so")
     assert phone.run("return document.querySelector('#sim-change').disabled;")
     choose(phone, "#sim-task", "eight")
     choose(phone, "#sim-world", "rooms")
@@ -616,11 +617,29 @@ def test_simulation_and_speed_of_lessons_are_chosen_in_more(a_lesson: Lesson) ->
 
 
 def test_a_minute_without_help_suggests_the_exam(a_lesson: Lesson) -> None:
-    a_lesson.begin(of_robot(), progress=Progress(60, 99, 0))
-    a_lesson.reads("#progress", "asks 0 a minute · rules 1 · a clean minute")
-    a_lesson.show(progress=Progress(60, 99, 1))
-    a_lesson.reads("#progress", "asks 1 a minute")
-    assert "clean" not in a_lesson.phone.text("#progress")
+    phone = a_lesson.phone
+    a_lesson.begin(of_robot(), progress=Progress(60, 91, 1))
+    a_lesson.reads("#drove-text", "91 %")
+    a_lesson.show(progress=Progress(60, 99, 0))
+    a_lesson.reads("#said", "It has not asked for a minute. Exam?")
+    phone.touch("#offer")
+    phone.wait(lambda: ("/exam",) in a_lesson.robot.told, "the exam begins")
+
+
+def test_first_lap_suggests_exam_and_slow_computer_is_slowed(a_lesson: Lesson) -> None:
+    phone, simulated = a_lesson.phone, replace(A_SIMULATION, unit="laps", progress=0.96)
+    a_lesson.begin(standing=Standing())
+    for speed, reached, laps in ((1, 1.0, 0.96), (1, 1.0, 1.02), (3, 2.4, 1.1)):
+        a_lesson.robot.simulated = replace(simulated, speed=speed, reached=reached, progress=laps)
+        assert a_lesson.robot.state is not None
+        a_lesson.show(tick=a_lesson.robot.state.tick + 100)
+        a_lesson.reads("#measure", f"{laps:.1f} laps")
+    assert phone.run("return saidBefore.join();").count("It has driven its first lap. Exam?") == 1
+    for _ in range(4):
+        phone.pass_time(1.0)
+        a_lesson.show(tick=a_lesson.robot.state.tick + 100)
+    a_lesson.reads("#said", "This computer is too slow for 3 times real time. It goes on in 2 times real time.")
+    assert a_lesson.told("/simulation/speed") == [2]
 
 
 # For all people.

@@ -19,7 +19,7 @@ import { Link } from "./link.js";
 import { Drive, driveCircle } from "./manual_drive.js";
 import { MidLevelPad } from "./mid_level.js";
 import { BASIC, MID } from "./mid_text.js";
-import { showProgress } from "./progress.js";
+import { Progress } from "./progress.js";
 import { Rewind } from "./rewind.js";
 import { drawRobot } from "./robot_view.js";
 import { Shown } from "./shown.js";
@@ -34,6 +34,7 @@ const CONTROLLED = [...TABS, "behaviours", "levels"]; // inert while this page h
 const FASTEST_BY_HAND_M_S = 0.6;
 const MESSAGE_MS = 8000;
 const STATE_MS = 1000;
+const OFFER_MS = 30000;
 const LIST_MS = 5000;
 const LONG_ANSWER = 80; // characters, beyond two lines of a phone
 
@@ -53,7 +54,8 @@ const compare = new Compare(link);
 const session = new SessionPanel(sendCommand);
 const files = new Files(sendCommand, showMessage);
 const exam = new Exam(sendCommand);
-const simulation = new Simulation(sendCommand);
+const progress = new Progress(suggestExam);
+const simulation = new Simulation({ sendCommand, showMessage, inControl });
 const shownDrive = new Shown((pressId, segments) => sendCommand("/shown", { press_id: pressId, segments }, "teach what was shown"));
 const rewind = new Rewind({ stop, onChange: draw });
 const world = new WorldView($("world-view"), (path, fields) => sendCommand(path, fields), rewind);
@@ -88,9 +90,11 @@ function showAnswer(answer) {
 
 let hideTimer = null;
 
-function showMessage(outcome, sentence) {
+// `offer`: label of a button next to the sentence, and what its touch does.
+function showMessage(outcome, sentence, offer = null) {
   const line = $("said");
-  $("undo-hold").hidden = true;
+  $("offer").hidden = !offer;
+  if (offer) [$("offer").textContent, $("offer").onclick] = offer;
   line.className = outcome;
   line.classList.toggle("long", sentence.length > LONG_ANSWER);
   setText(line, sentence);
@@ -98,8 +102,8 @@ function showMessage(outcome, sentence) {
   if (outcome === "pending") return;
   hideTimer = setTimeout(() => {
     setText(line, "\u00a0");
-    $("undo-hold").hidden = true;
-  }, MESSAGE_MS);
+    $("offer").hidden = true;
+  }, offer ? OFFER_MS : MESSAGE_MS);
 }
 
 // ---- Hold to correct
@@ -127,9 +131,7 @@ function showHold({ hold: told }) {
     showMessage("pending", text("holding", fields));
   } else {
     heldHere = undefined;
-    showMessage("saved", text("held", fields));
-    $("undo-hold").hidden = !told.lessons;
-    $("undo-hold").onclick = () => sendCommand("/undo", { lesson: told.lesson });
+    showMessage("saved", text("held", fields), told.lessons ? ["Undo", () => sendCommand("/undo", { lesson: told.lesson })] : null);
   }
 }
 
@@ -252,6 +254,11 @@ async function undoLast() {
   else showMessage("refused", text("nothingToUndo"));
 }
 
+function suggestExam(because) {
+  const offer = exam.available && inControl() ? ["Exam", () => exam.begin()] : null;
+  showMessage("saved", offer ? `${because} Exam?` : because, offer);
+}
+
 // Sends a reward, or in phase 4 an appraisal for the critic.
 function reward(value) {
   if (link.state && critic.teaches(link.state)) {
@@ -351,16 +358,14 @@ function show() {
   const state = link.state;
   if (!state || !hello || shown === state) return;
   shown = state;
-  setText($("phase"), `phase ${state.phase}`);
-  const slow = state.speed_share < 1; // a slow lesson
-  setText($("phase-name"), slow ? `slow, ${Math.round(100 * state.speed_share)} %` : session.phaseNames[state.phase - 1] ?? "");
+  const slow = state.speed_share < 1 ? `, slow, ${Math.round(100 * state.speed_share)} %` : "";
+  setText($("phase"), `${state.phase}, ${session.phaseNames[state.phase - 1] ?? ""}${slow}`);
   setText($("clock"), clock(state.clock_s));
   setText($("session"), state.session ?? "no session");
-  setText($("lesson-count"), String(state.lessons));
   $("rewind").disabled = $("rewind-time").disabled = !rewind.ready || !inControl();
   $("go").disabled = !state.stands.needs_go || state.by_hand || !inControl();
   showLink(state);
-  showProgress(state, simulation.measure);
+  progress.show(state, simulation.simulation);
   decision.show(state, hello);
   compare.update(decision.worded);
   announce(state);
@@ -405,7 +410,6 @@ function showLink(state) {
   const both = rtt === null ? null : rtt + (link.pageRttMs ?? 0);
   const parts = [`${Math.round(rate ?? 0)}/s`, both === null ? "" : `${both.toFixed(0)} ms`, age > 150 ? `${age} ms old` : ""];
   setText($("link-text"), parts.filter(Boolean).join(" · "));
-  $("link").title = `updates a second; round trip to the robot (${rtt?.toFixed(1) ?? "–"} ms) and to this page's server`;
 }
 
 function showFreshness() {

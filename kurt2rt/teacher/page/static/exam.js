@@ -13,7 +13,7 @@ export class Exam {
   // `sendCommand` resolves with the answer.
   constructor(sendCommand) {
     this.#sendCommand = sendCommand;
-    $("examine").addEventListener("click", () => this.#begin());
+    $("examine").addEventListener("click", () => this.begin());
     $("show-exam").addEventListener("click", () => $("exam-result").show()); // not modal: STOP and GO stay free
     $("close-exam").addEventListener("click", () => $("exam-result").close());
   }
@@ -37,7 +37,12 @@ export class Exam {
     this.#own = false;
   }
 
-  async #begin() {
+  // True if the robot may be examined now.
+  get available() {
+    return !$("exam").hidden && !this.#running;
+  }
+
+  async begin() {
     const answer = await this.#sendCommand("/exam", {}, "exam");
     this.#own = answer.accepted;
   }

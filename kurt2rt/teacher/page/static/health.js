@@ -1,4 +1,4 @@
-// Health of the robot's program: a small line in the bar, which opens a table; faults are in colour.
+// Health of the robot's program: a dot in the bar, which opens a table; a fault has its name there, in colour.
 
 import { setText } from "./decision.js";
 
@@ -22,16 +22,14 @@ export class Health {
     if ($("health-table").open) this.#fill();
   }
 
-  // Shows the line in the bar: lateness of the loop, or the name of the worst fault.
+  // Shows the name of the worst fault, next to the dot.
   show(state) {
     const troubles = this.#report?.troubles ?? [];
     const old = Boolean(this.#report?.tick) && state.tick - this.#report.tick > OLD_TICKS;
-    const [line, missed] = [$("health"), $("missed")];
+    const line = $("health");
     line.classList.toggle("warns", troubles.length > 0 || old);
     line.classList.toggle("urgent", troubles.some(({ urgent }) => urgent));
-    const late = `late ${state.late_p99_ms?.toFixed(state.late_p99_ms < 1 ? 2 : 1) ?? "–"} ms`;
-    setText($("late"), old ? "no report" : named(troubles) || late);
-    setText(missed, troubles.length || old ? "" : `, missed ${state.missed_ticks}`);
+    setText(line, old ? "no report" : named(troubles) ?? "");
   }
 
   // Returns the faults that stop the robot or put lessons at risk, without the one in the state itself.

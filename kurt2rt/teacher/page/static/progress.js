@@ -1,29 +1,40 @@
-// Progress of teaching: fraction driven without help, questions a minute, number of rules.
+// Progress of teaching: the share of the last minute that the robot drove by itself, and what its task counts.
 
 import { setText } from "./decision.js";
+import { text } from "./texts.js";
 
 const MINUTE_S = 60;
 const CLEAN_PERCENT = 98; // a press or a question takes more
 
-// Returns the progress of a simulated robot in its task, such as "laps 2.3"; empty for a real robot.
-export function measured({ progress, unit }) {
+const $ = (id) => document.getElementById(id);
+
+// Returns the progress of a simulated robot in its task, such as "2.3 laps"; empty for a real robot.
+function measured({ progress, unit }) {
   if (!unit) return "";
-  return unit === "m" ? `distance ${progress.toFixed(0)} m` : `${unit} ${progress.toFixed(1)}`;
+  return `${progress.toFixed(unit === "m" ? 0 : 1)} ${unit}`;
 }
 
-export function progress({ progress, rlas }, measure = "") {
-  const { seconds, driven_percent: driven, asks } = progress;
-  const parts = [`rules ${rlas}`]
-  if (driven !== null) parts.unshift(`by itself ${driven} %`, seconds < MINUTE_S ? `asks ${asks} in ${seconds} s` : `asks ${asks} a minute`);
-  if (measure) parts.push(measure);
-  if (seconds >= MINUTE_S && asks === 0 && driven >= CLEAN_PERCENT) parts.push(measure ? "a clean minute: exam?" : "a clean minute");
-  return parts.join(" · ");
-}
+export class Progress {
+  #suggest;
+  #held = {}; // whether each reason held in the state before
 
-export function showProgress(state, measure) {
-  const line = document.getElementById("progress");
-  setText(line, progress(state, measure));
-  line.title =
-    "In the last minute: time driven by its own rules, and how often it stood and asked, because no rule was near enough. " +
-    "Progress in the task is since the start of the run";
+  // `suggest` is called with a sentence when the robot has driven a minute without a question, and its first lap.
+  constructor(suggest) {
+    this.#suggest = suggest;
+  }
+
+  // `simulation`: its last report; null for a real robot.
+  show({ progress: { seconds, driven_percent: driven, asks } }, simulation) {
+    $("drove").value = driven ?? 0;
+    setText($("drove-text"), driven === null ? "" : `${driven} %`);
+    setText($("measure"), simulation ? measured(simulation) : "");
+    const { progress = 0, unit = "" } = simulation ?? {};
+    this.#reach("cleanMinute", seconds >= MINUTE_S && asks === 0 && driven >= CLEAN_PERCENT);
+    this.#reach("firstLap", progress >= 1 && unit !== "" && unit !== "m", { round: unit.slice(0, -1) });
+  }
+
+  #reach(reason, holds, fields = {}) {
+    if (holds && this.#held[reason] === false) this.#suggest(text(reason, fields)); // not what was so before the page opened
+    this.#held[reason] = holds;
+  }
 }

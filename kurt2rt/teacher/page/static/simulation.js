@@ -2,23 +2,29 @@
 
 import { words } from "./actions.js";
 import { twice } from "./lessons.js";
-import { measured } from "./progress.js";
 import { setText } from "./decision.js";
+import { text } from "./texts.js";
 
 const $ = (id) => document.getElementById(id);
 const GENERATED = ["rooms", "streets", "floors"]; // kinds of worlds that exist for any whole number
 const FASTEST = 10;
 const HIGHEST_NUMBER = 999999999;
+const KEEPS_UP = 0.9; // share of the chosen speed that a computer which holds it reaches
+const SLOW_MS = 3000;
 
 export class Simulation {
   #sendCommand;
-  #simulation = null;
-  measure = ""; // progress in the task
+  #showMessage;
+  #inControl;
+  #slowMs = null; // since when the computer does not hold the speed; null: it does
   #run = ""; // world, task and their alternatives, as displayed
+  simulation = null; // newest report
 
   // `sendCommand` resolves with the answer.
-  constructor(sendCommand) {
+  constructor({ sendCommand, showMessage, inControl }) {
     this.#sendCommand = sendCommand;
+    this.#showMessage = showMessage;
+    this.#inControl = inControl;
     for (const id of ["sim-world", "sim-number", "sim-task"]) $(id).addEventListener("input", () => this.#showChoice());
     $("sim-change").addEventListener("click", () => this.#change());
     const speeds = Array.from({ length: FASTEST }, (_, i) => i + 1);
@@ -31,15 +37,14 @@ export class Simulation {
 
   build(hello) {
     $("simulation").hidden = !hello.simulated;
-    this.measure = "";
+    this.simulation = null;
   }
 
   update(simulation) {
-    this.#simulation = simulation;
-    this.measure = measured(simulation);
-    const { world, task, speed, reached } = simulation;
+    this.simulation = simulation;
+    const { world, task, speed } = simulation;
     $("sim-speed").value = String(speed);
-    setText($("sim-reached"), speed === 1 ? "" : `${reached.toFixed(1)} times reached`);
+    this.#keepUp(simulation);
     // A choice in progress is kept although the speed is reported each second.
     const run = JSON.stringify([world, task, simulation.worlds, simulation.tasks]);
     if (run === this.#run) return;
@@ -60,14 +65,26 @@ export class Simulation {
     this.#showChoice();
   }
 
+  // Goes back to a speed that this computer holds, and says so.
+  async #keepUp({ speed, reached }) {
+    if (speed === 1 || reached >= KEEPS_UP * speed) this.#slowMs = null;
+    else this.#slowMs ??= performance.now();
+    if (this.#slowMs === null || performance.now() - this.#slowMs < SLOW_MS || !this.#inControl()) return;
+    this.#slowMs = null;
+    const times = Math.max(1, Math.floor(reached));
+    const answer = await this.#sendCommand("/simulation/speed", { times }, "speed");
+    const holds = times === 1 ? "real time" : `${times} times real time`;
+    if (answer.accepted) this.#showMessage("saved", text("speedHeld", { speed, holds }));
+  }
+
   get #world() {
     const chosen = $("sim-world").value;
     return GENERATED.includes(chosen) ? `${chosen}-${Number($("sim-number").value)}` : chosen;
   }
 
   #showChoice() {
-    if (!this.#simulation) return;
-    const { world, task, tasks } = this.#simulation;
+    if (!this.simulation) return;
+    const { world, task, tasks } = this.simulation;
     const generated = GENERATED.includes($("sim-world").value);
     $("sim-number").hidden = !generated;
     const number = Number($("sim-number").value);
@@ -78,7 +95,7 @@ export class Simulation {
   }
 
   #change() {
-    const { world, task } = this.#simulation;
+    const { world, task } = this.simulation;
     const chosen = $("sim-task").value;
     // Without a chosen world, the task brings its own.
     const args = { world: this.#world === world ? null : this.#world, task: chosen === task ? null : chosen, fresh: false };
