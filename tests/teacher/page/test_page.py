@@ -684,10 +684,14 @@ return [...document.querySelectorAll("#actions button, #rewards button, #tabs bu
 """
 
 
-def test_a_phone_shows_all_actions_and_no_answer_moves_them(a_lesson: Lesson) -> None:
+def test_rare_actions_unfold_and_no_answer_moves_any(a_lesson: Lesson) -> None:
     phone, long = a_lesson.phone, "RLA 10 taught: back; all near it say curve_right, spin_right, forward (RLA 9 first)"
-    a_lesson.begin(of_robot(actions=ACTIONS), standing=Standing())
-    assert phone.run("const e = document.querySelector('#teach'); return e.scrollHeight - e.clientHeight;") == 0
+    a_lesson.begin(of_robot(actions=ACTIONS), standing=Standing(StandReason.ASKS, asks=True), nearest_action="flee")
+    scrolls = "const e = document.querySelector('#teach'); return e.scrollHeight - e.clientHeight;"
+    assert (len(phone.texts("#actions [data-action]")), phone.run(scrolls)) == (13, 0)
+    assert phone.has("#more-actions.nearest"), "the action of the nearest rule is a folded one"
+    phone.touch("#more-actions")
+    assert (len(phone.texts("#actions [data-action]")), phone.run(scrolls)) == (18, 0)
     a_lesson.robot.refuses = long
     before = phone.run(_TOPS)
     phone.run("document.querySelector('#praise').click()")

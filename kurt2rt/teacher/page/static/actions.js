@@ -9,10 +9,11 @@ export const WITHDRAWN = "ask"; // the action of an RLA whose action was withdra
 
 // Grid place of each known action: row, first column, number of columns. Left is left.
 const PLACES = {
-  curve_left: [1, 1, 1], bear_left: [1, 2, 1], forward: [1, 3, 1], bear_right: [1, 4, 1], curve_right: [1, 5, 1],
-  spin_left: [2, 1, 1], quarter_turn_left: [2, 2, 1], stand: [2, 3, 1], quarter_turn_right: [2, 4, 1], spin_right: [2, 5, 1],
-  along_left_wall: [3, 1, 2], back: [3, 3, 1], along_right_wall: [3, 4, 2],
+  curve_left: [1, 1, 2], bear_left: [1, 3, 2], forward: [1, 5, 2], bear_right: [1, 7, 2], curve_right: [1, 9, 2],
+  spin_left: [2, 1, 2], quarter_turn_left: [2, 3, 2], stand: [2, 5, 2], quarter_turn_right: [2, 7, 2], spin_right: [2, 9, 2],
+  along_left_wall: [3, 1, 4], back: [3, 5, 2], along_right_wall: [3, 7, 4],
 };
+const WITHIN_REACH = 13; // of a thumb on a phone: three rows; the others are folded away
 const SHORT = { quarter_turn_left: "turn 90°", quarter_turn_right: "turn 90°" };
 const NAMES = { quarter_turn_left: "turn 90° to the left", quarter_turn_right: "turn 90° to the right" };
 
@@ -25,6 +26,7 @@ export class ActionPad {
   #choose;
   #press;
   #buttons = new Map();
+  #more = document.createElement("button"); // opens and folds the rare actions
   names = [];
 
   // `choose` is called for a tap; `press` is the TapOrHold of the buttons.
@@ -32,13 +34,27 @@ export class ActionPad {
     this.#box = box;
     this.#choose = choose;
     this.#press = press;
+    this.#more.type = "button";
+    this.#more.id = "more-actions";
+    this.#more.addEventListener("click", () => this.#open(!this.#box.classList.contains("open")));
   }
 
   build(names) {
     if (names.join() === this.names.join()) return;
     this.names = names;
     this.#buttons.clear();
-    this.#box.replaceChildren(...names.map((name) => this.#button(name)));
+    this.#box.replaceChildren(...names.map((name) => this.#button(name)), this.#more);
+    this.#box.classList.toggle("folds", names.length > WITHIN_REACH);
+    this.#open(false);
+    const placed = names.filter((name) => PLACES[name]);
+    const others = names.filter((name) => !PLACES[name]);
+    for (const name of [...placed, ...others].slice(WITHIN_REACH)) this.#buttons.get(name).classList.add("rare");
+  }
+
+  #open(open) {
+    this.#box.classList.toggle("open", open);
+    this.#more.setAttribute("aria-expanded", String(open));
+    this.#more.textContent = open ? "fewer" : "more actions";
   }
 
   #button(name) {
@@ -55,7 +71,7 @@ export class ActionPad {
     if (place) {
       button.style.gridRow = place[0];
       button.style.gridColumn = `${place[1]} / span ${place[2]}`;
-      button.classList.toggle("wide", place[2] > 1);
+      button.classList.toggle("wide", place[2] > 2);
     }
     holdButton(button, name, this.#press);
     button.addEventListener("click", () => this.#choose(name));
@@ -63,11 +79,15 @@ export class ActionPad {
     return button;
   }
 
-  // Marks the action that drives, and the action of the nearest RLA.
+  // Marks the action that drives, and the action of the nearest RLA; the fold, too, if that is a rare one.
   show(state) {
     for (const [name, button] of this.#buttons) {
       button.classList.toggle("current", name === state.action && state.stands.reason === "drives");
       button.classList.toggle("nearest", state.stands.asks && name === state.nearest_action);
+    }
+    const folded = !this.#box.classList.contains("open");
+    for (const mark of ["current", "nearest"]) {
+      this.#more.classList.toggle(mark, folded && this.#box.querySelector(`.rare.${mark}`) !== null);
     }
   }
 
