@@ -165,7 +165,7 @@ class RefusalCode(TextCode):
     NEXT_RUN_FAILED = ("next run failed", "{says}")
     NEXT_RUN_CRASHED = ("next run crashed", "the next run cannot begin: {error}")
     TAUGHT_BY_SCRIPT = ("taught by script", "the scripted teacher teaches this run; start kurt2rt run without --auto")
-    NO_WORLD = ("no world", "world: {world!r} is not known; give one of {known}, rooms-N, flats-N, streets-N, floors-N")
+    NO_WORLD = ("no world", "world: {world!r} is not known; give one of {known}")
     NO_TASK = ("no task", "task: {task!r} is not known; give one of {known}")
     COPY_FAILED = ("copy failed", "{says}")
     COPY_CRASHED = ("copy crashed", "the copy failed: {error}")

@@ -34,7 +34,9 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.runtime import empty_system
 
-_GENERATED = re.compile(r"(rooms|streets|floors)-\d{1,9}", re.ASCII)
+_KINDS = ("rooms", "flats", "streets", "floors")
+"""Kinds of generated worlds, which exist for any whole number."""
+_GENERATED = re.compile(rf"({'|'.join(_KINDS)})-\d{{1,9}}", re.ASCII)
 """A teacher chooses among names: a path would read any file of the robot's machine."""
 _ZIP = b"PK"
 
@@ -215,7 +217,7 @@ class SimulatedRuns:
 
     def _list_choices(self) -> SimulationView:
         tasks = tuple(TaskName(name, load_task(name).sentence) for name in shipped_names("tasks"))
-        worlds = tuple(shipped_names("worlds"))
+        worlds = (*shipped_names("worlds"), *(f"{kind}-N" for kind in _KINDS))
         return SimulationView(self.present.world, self.present.task_name, worlds, tasks)
 
 

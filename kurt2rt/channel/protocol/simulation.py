@@ -80,7 +80,7 @@ class SimulationView:
     """World as chosen: `a`, `rooms-7`, a path."""
     task: Title
     worlds: Annotated[tuple[Title, ...], UpTo(64)]
-    """Worlds by name; `rooms-N`, `flats-N`, `streets-N` and `floors-N` are made for any whole number N."""
+    """Worlds by name; those that end in `-N`, such as `rooms-N`, are made for any whole number N of up to 9 digits."""
     tasks: Annotated[tuple[TaskName, ...], UpTo(64)]
     speed: Annotated[int, Int(1, FASTEST)] = 1
     """Chosen number of robot seconds in one second."""

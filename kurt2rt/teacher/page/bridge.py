@@ -341,7 +341,8 @@ class Bridge:
             self._newest = state
             self._update_presence()
             self._slow.update(state, watched=bool(self._connections))
-            view = state_view(state, self._robot.link, self._robot.state_age_s, self._press_refusal(), self._slow.words)
+            robot, refused, words = self._robot, self._press_refusal(), self._slow.words
+            view = state_view(state, robot.link, robot.state_age_s, refused, words, self._device)
             for connection in self._connections.values():
                 connection.set_state(state.boot, view)
 

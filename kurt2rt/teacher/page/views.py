@@ -12,7 +12,7 @@ from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.simulation import EXAM, SIMULATION, ExamStatus, SimulationView, WorldView
 from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
-from kurt2rt.core.decision.standing import GO_ON_PAGE, standing_headline
+from kurt2rt.core.decision.standing import GO_ON_PAGE, StopReason, standing_headline
 from kurt2rt.core.outcome_text import Surface
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.teaching.question import FeatureDifference
@@ -75,7 +75,7 @@ _SPEED_CHANGES = (GuardReason.SLEW_LIMIT, GuardReason.SPEED_LIMIT)
 """Limits that every change of speed meets; the page leaves them out."""
 _COPIED = (
     *("tick", "phase", "bumpers", "left_m_s", "right_m_s", "cause", "action", "rla", "nearest", "nearest_action"),
-    *("taught_by", "taught_at", "teacher", "by_hand", "rlas", "lessons", "unsaved", "session", "clock_s", "trouble"),
+    *("taught_at", "teacher", "by_hand", "rlas", "lessons", "unsaved", "session", "clock_s", "trouble"),
     *(
         "missed_ticks",
         "behaviour",
@@ -96,8 +96,12 @@ _FINITE = ("infrared_age_s", "distance", "radius", "late_p99_ms")
 """Fields of State that may be infinite, which the page gets as null."""
 
 
+_YOUR_STOPS = (StopReason.SAID_STOP, StopReason.LET_GO, StopReason.LINK_LOST)
+"""Stops that are told as those of `you` to the device that caused them."""
+
+
 def state_view(
-    state: State, link: LinkQuality, age_s: float, refused: str, words: SensorWords = NO_WORDS
+    state: State, link: LinkQuality, age_s: float, refused: str, words: SensorWords = NO_WORDS, device: str = ""
 ) -> dict[str, Any]:
     """Return the message for one state.
 
@@ -107,13 +111,18 @@ def state_view(
         age_s: time since the state came.
         refused: reason why the last press does not drive, if any.
         words: for the robot's sensors.
+        device: name of the page's device, which is `you` in the texts.
     """
-    stands = state.standing
+    stands, stop = state.standing, state.standing.stop
+    if stop is not None and stop.reason in _YOUR_STOPS and stop.name == device:
+        stands = stands._replace(stop=stop._replace(name="you"))
     return {
         "kind": "state",
         **{name: getattr(state, name) for name in _COPIED},
         **{name: _finite(getattr(state, name)) for name in _FINITE},
         "infrared": state.infrared_counts,
+        "taught_by": "you" if state.taught_by == device else state.taught_by,
+        "yours": state.teacher == device,
         "stands": {
             "reason": stands.reason,
             "needs_go": stands.needs_resume,

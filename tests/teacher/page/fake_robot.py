@@ -91,7 +91,7 @@ A_WORLD = WorldView(0, "A", (3.0, 4.0), ((0.0, 0.0), (3.0, 0.0), (3.0, 4.0), (0.
 A_SIMULATION = SimulationView(
     "a",
     "wall_following",
-    ("a", "b", "c", "manhattan"),
+    ("a", "b", "c", "manhattan", "rooms-N"),
     (TaskName("eight", "Teach it to drive an eight round the two columns"), TaskName("wall_following", "Teach it so")),
 )
 A_LINK = LinkQuality(4.0, 1.0, 20.0)

@@ -108,7 +108,7 @@ def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, 
     room.put_robot_in_the_open()
     hold_stick(phone)
     phone.wait(lambda: room.state().by_hand and room.state().left_m_s > 0.05, "the robot drives by hand")
-    phone.wait(lambda: phone.text("#sentence") == "local drives by hand", "the page says who drives")
+    phone.wait(lambda: phone.text("#sentence") == "You drive by hand", "the page says who drives")
     phone.show("5-by-hand")
     phone.finger_up()
     phone.wait(lambda: not room.state().by_hand and room.state().left_m_s == 0, "the robot stands")

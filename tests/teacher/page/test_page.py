@@ -2,6 +2,7 @@
 
 import hashlib
 import io
+import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -113,6 +114,26 @@ def test_lesson_that_contradicts_is_shown_and_undone_alone(a_lesson: Lesson) -> 
     a_lesson.phone.touch("#lesson-list .contradicts button")
     a_lesson.phone.wait(lambda: a_lesson.told("/undo") == [slip.command_id], "the one lesson is undone")
     a_lesson.phone.touch("#tab-teach")
+
+
+def test_page_that_only_watches_reads_lessons_and_explains(a_lesson: Lesson) -> None:
+    phone = a_lesson.phone
+    a_lesson.begin(
+        lambda robot: setattr(robot, "newest_lessons", (A_LESSON._replace(teacher="local"),)), taught_by="local"
+    )
+    a_lesson.reads("#sentence", "RLA 1 does forward, taught by you")
+    phone.touch("#tab-lessons")
+    a_lesson.reads("#rules", "1 rule")
+    assert phone.shows("#lesson-list button")
+    a_lesson.show(teacher="ann")
+    phone.wait(lambda: not phone.shows("#lesson-list button"), "this page may not undo")
+    a_lesson.reads("#lesson-list", "you · phase 1")
+    on_each_screen(phone, "25-watches")
+    phone.touch("#sentence")
+    a_lesson.reads("#explanation-says", "nothing was decided yet")
+    phone.touch("#close-explanation")
+    phone.touch("#tab-teach")
+    a_lesson.reads("#claim-text", "ann is the teacher")
 
 
 def test_shown_segments_are_taught_but_for_those_left_out(a_lesson: Lesson) -> None:
@@ -603,7 +624,7 @@ def test_simulation_and_speed_of_lessons_are_chosen_in_more(a_lesson: Lesson) ->
     phone.wait(lambda: "slow, 35 %" in phone.run("return document.querySelector('#phase').textContent;"), "it says so")
     assert phone.run("return document.querySelector('#sim-change').disabled;")
     choose(phone, "#sim-task", "eight")
-    choose(phone, "#sim-world", "rooms")
+    choose(phone, "#sim-world", "rooms-N")
     choose(phone, "#sim-number", "9007")
     on_each_screen(phone, "23-simulation")
     phone.touch("#sim-change")
@@ -629,15 +650,15 @@ def test_a_minute_without_help_suggests_the_exam(a_lesson: Lesson) -> None:
 def test_first_lap_suggests_exam_and_slow_computer_is_slowed(a_lesson: Lesson) -> None:
     phone, simulated = a_lesson.phone, replace(A_SIMULATION, unit="laps", progress=0.96)
     a_lesson.begin(standing=Standing())
+    tick = itertools.count(10_000, 100)
     for speed, reached, laps in ((1, 1.0, 0.96), (1, 1.0, 1.02), (3, 2.4, 1.1)):
         a_lesson.robot.simulated = replace(simulated, speed=speed, reached=reached, progress=laps)
-        assert a_lesson.robot.state is not None
-        a_lesson.show(tick=a_lesson.robot.state.tick + 100)
+        a_lesson.show(tick=next(tick))
         a_lesson.reads("#measure", f"{laps:.1f} laps")
     assert phone.run("return saidBefore.join();").count("It has driven its first lap. Exam?") == 1
     for _ in range(4):
         phone.pass_time(1.0)
-        a_lesson.show(tick=a_lesson.robot.state.tick + 100)
+        a_lesson.show(tick=next(tick))
     a_lesson.reads("#said", "This computer is too slow for 3 times real time. It goes on in 2 times real time.")
     assert a_lesson.told("/simulation/speed") == [2]
 

@@ -30,7 +30,7 @@ import { WorldView } from "./world_view.js";
 
 const $ = (id) => document.getElementById(id);
 const TABS = ["teach", "drive", "goals", "lessons", "more"];
-const CONTROLLED = [...TABS, "behaviours", "levels"]; // inert while this page has no control
+const CONTROLLED = ["teach", "drive", "goals", "more", "behaviours", "levels"]; // inert while this page has no control
 const FASTEST_BY_HAND_M_S = 0.6;
 const MESSAGE_MS = 8000;
 const STATE_MS = 1000;
@@ -322,7 +322,7 @@ link.addEventListener("simulation", ({ detail }) => simulation.update(detail));
 link.addEventListener("exam", ({ detail }) => exam.update(detail));
 link.addEventListener("health", ({ detail }) => health.update(detail));
 link.addEventListener("situations", ({ detail }) => goals.list(detail.situations));
-link.addEventListener("lessons", ({ detail }) => lessons.show(detail.lessons, detail.after));
+link.addEventListener("lessons", ({ detail }) => lessons.show(detail.lessons, detail.after, page.device));
 link.addEventListener("let_go", ({ detail }) => {
   const ended = hold.held ? "holdEnded" : "driveEnded";
   heldHere = undefined;
@@ -362,6 +362,7 @@ function show() {
   setText($("phase"), `${state.phase}, ${session.phaseNames[state.phase - 1] ?? ""}${slow}`);
   setText($("clock"), clock(state.clock_s));
   setText($("session"), state.session ?? "no session");
+  setText($("rules"), state.rlas === 1 ? "1 rule" : `${state.rlas} rules`);
   $("rewind").disabled = $("rewind-time").disabled = !rewind.ready || !inControl();
   $("go").disabled = !state.stands.needs_go || state.by_hand || !inControl();
   showLink(state);
@@ -453,6 +454,7 @@ function showControl() {
   const state = link.state;
   const box = $("claim");
   box.hidden = inControl() || !state;
+  document.body.classList.toggle("watches", !inControl());
   for (const id of CONTROLLED) $(id).inert = !inControl() || !link.fresh;
   if (box.hidden) return;
   releaseAll();

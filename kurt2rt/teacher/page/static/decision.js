@@ -57,8 +57,8 @@ export function sentence(state) {
       return `${driver(state)} keeps ${words(state.action)} for its shortest time; ${nearest(state)} is nearest now`;
     case "teacher":
       return state.action && state.action !== "by hand"
-        ? `${state.teacher ?? "A teacher"} runs ${words(state.action)}`
-        : `${state.teacher ?? "A teacher"} drives by hand`;
+        ? `${state.yours ? "You run" : `${state.teacher ?? "A teacher"} runs`} ${words(state.action)}`
+        : `${state.yours ? "You drive" : `${state.teacher ?? "A teacher"} drives`} by hand`;
     case "doubt":
       return `I doubt ${nearest(state)}${of(state)} here, which says ${words(state.nearest_action)}, teach me`;
     case "unknown":

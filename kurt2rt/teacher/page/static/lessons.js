@@ -34,6 +34,7 @@ export class Lessons {
   #list = document.getElementById("lesson-list");
   #undo;
   #lessons = null;
+  #device = "";
   after = 0; // number of the newest command whose lesson is in the list
 
   constructor(undo) {
@@ -50,8 +51,10 @@ export class Lessons {
     return this.#lessons?.find((lesson) => lesson.teacher === teacher);
   }
 
-  show(lessons, after) {
+  // `device`: name of this page's device.
+  show(lessons, after, device) {
     this.after = after;
+    this.#device = device;
     if (JSON.stringify(lessons) === JSON.stringify(this.#lessons)) return; // a first tap on Undo is not forgotten
     this.#lessons = lessons;
     if (!lessons.length) {
@@ -90,7 +93,7 @@ export class Lessons {
     const what = document.createElement("b");
     what.textContent = lesson;
     const who = document.createElement("small");
-    who.textContent = [teacher, `phase ${phase}`, when(stamp) || "not saved yet"].join(" · ");
+    who.textContent = [teacher === this.#device ? "you" : teacher, `phase ${phase}`, when(stamp) || "not saved yet"].join(" · ");
     told.append(what, who);
     row.append(told);
     if (undone) {

@@ -72,7 +72,7 @@ export class SessionPanel {
     name.disabled = state.session !== null;
     if (state.session !== null) name.value = state.session;
     else if (!name.value) name.value = newSession();
-    setText($("who"), state.teacher === null ? "no teacher" : `${state.teacher} teaches`);
+    setText($("who"), state.teacher === null ? "no teacher" : state.yours ? "You teach" : `${state.teacher} teaches`);
     $("hand-over").disabled = !inCharge;
     $("take-here").disabled = inCharge;
   }

@@ -6,7 +6,6 @@ import { setText } from "./decision.js";
 import { text } from "./texts.js";
 
 const $ = (id) => document.getElementById(id);
-const GENERATED = ["rooms", "streets", "floors"]; // kinds of worlds that exist for any whole number
 const FASTEST = 10;
 const HIGHEST_NUMBER = 999999999;
 const KEEPS_UP = 0.9; // share of the chosen speed that a computer which holds it reaches
@@ -49,18 +48,16 @@ export class Simulation {
     const run = JSON.stringify([world, task, simulation.worlds, simulation.tasks]);
     if (run === this.#run) return;
     this.#run = run;
-    const [kind, number] = world.split("-");
-    const generated = GENERATED.includes(kind) && /^\d+$/.test(number ?? "");
-    const named = simulation.worlds.includes(world) || generated ? simulation.worlds : [world, ...simulation.worlds];
-    $("sim-world").replaceChildren(
-      ...named.map((name) => option(name, `World ${name.length === 1 ? name.toUpperCase() : words(name)}`)),
-      ...GENERATED.map((name) => option(name, `${name[0].toUpperCase()}${name.slice(1)} no.`)),
-    );
-    $("sim-world").value = generated ? kind : world;
+    const number = world.match(/-(\d+)$/)?.[1];
+    const listed = world.replace(/-\d+$/, "-N");
+    const generated = simulation.worlds.includes(listed) && listed !== world;
+    const all = simulation.worlds.includes(listed) ? simulation.worlds : [world, ...simulation.worlds];
+    $("sim-world").replaceChildren(...all.map((name) => option(name, worldTitle(name))));
+    $("sim-world").value = generated ? listed : world;
     if (generated) $("sim-number").value = number;
     const tasks = simulation.tasks.map((each) => each.name);
-    const all = tasks.includes(task) ? tasks : [task, ...tasks];
-    $("sim-task").replaceChildren(...all.map((name) => option(name, words(name))));
+    const known = tasks.includes(task) ? tasks : [task, ...tasks];
+    $("sim-task").replaceChildren(...known.map((name) => option(name, words(name))));
     $("sim-task").value = task;
     this.#showChoice();
   }
@@ -79,13 +76,13 @@ export class Simulation {
 
   get #world() {
     const chosen = $("sim-world").value;
-    return GENERATED.includes(chosen) ? `${chosen}-${Number($("sim-number").value)}` : chosen;
+    return chosen.replace(/-N$/, `-${Number($("sim-number").value)}`);
   }
 
   #showChoice() {
     if (!this.simulation) return;
     const { world, task, tasks } = this.simulation;
-    const generated = GENERATED.includes($("sim-world").value);
+    const generated = $("sim-world").value.endsWith("-N"); // such as rooms, for any whole number
     $("sim-number").hidden = !generated;
     const number = Number($("sim-number").value);
     const valid = !generated || ($("sim-number").value !== "" && Number.isInteger(number) && number >= 0 && number <= HIGHEST_NUMBER);
@@ -101,6 +98,11 @@ export class Simulation {
     const args = { world: this.#world === world ? null : this.#world, task: chosen === task ? null : chosen, fresh: false };
     this.#sendCommand("/simulation/run", args, "the next run");
   }
+}
+
+function worldTitle(name) {
+  if (name.endsWith("-N")) return `${name[0].toUpperCase()}${name.slice(1, -2)} no.`;
+  return `World ${name.length === 1 ? name.toUpperCase() : words(name)}`;
 }
 
 function option(value, text) {

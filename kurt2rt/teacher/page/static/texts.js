@@ -46,7 +46,7 @@ const TEXTS = {
   bubbleStop: "STOP stops the robot, from every device. GO lets it drive on.",
   phase1: "In an unknown situation it stops and asks. Your answer becomes a rule.",
   phase2: "It drives by its rules, and you also correct it while it drives.",
-  phase3: "Right and wrong change the values of its rules. If a value is too low, the robot asks again.",
+  phase3: "Right and wrong change the values of its rules. If a value is too low, the robot asks again. From now on it asks later about what is new.",
   phase4: "Right and wrong teach its critic to judge by itself.",
   phase5: "It drives without a teacher and never asks. A trusted critic repairs its rules.",
 };
