@@ -7,7 +7,7 @@ from typing import Final
 from config import CONFIG_DIR
 from config.errors import guess
 from config.plugins import PluginError, PluginKind, UnknownPluginError, shelf
-from config.robot_plugins import ROBOTS, find_robot_kind, is_robot
+from config.robot_plugins import ROBOTS, find_robot_kind, is_robot, plugin_tasks
 from config.settings import SettingsError
 
 SHIPPED_DIR: Final = CONFIG_DIR
@@ -82,7 +82,7 @@ def find_config(kind: str, name_or_path: str) -> Path:
     of_robot = _file_of_robot(kind, name_or_path)
     if of_robot is not None:
         return of_robot
-    plugins = ""
+    plugins, is_name = "", given.suffix not in YAML_SUFFIXES
     if kind == ROBOTS.group:
         names += (each.name for each in ROBOTS.installed() if each.name not in names)
     if kind == TASKS.group:
@@ -90,13 +90,15 @@ def find_config(kind: str, name_or_path: str) -> Path:
             return plugin_file(str(TASKS.find(name_or_path)), name_or_path)
         except UnknownPluginError:
             names += (each.name for each in TASKS.installed())
+            names += (each.name for each in plugin_tasks())
             plugins = "module:NAME, "
         except PluginError as error:
             raise SettingsError(error.what, where=error.where, do=error.do) from error
+    near = guess(name_or_path if is_name else given.stem, names)
     raise SettingsError(
-        "no such file" if given.suffix in YAML_SUFFIXES else f"no such name in {kind}",
+        f"no such name in {kind}" if is_name else "no such file",
         where=name_or_path,
-        do=f"give {plugins}the path of a .yaml file, or one of: {', '.join(names)}{guess(given.stem, names)}",
+        do=f"give {plugins}the path of a .yaml file, or one of: {', '.join(names)}{near}",
     )
 
 
@@ -112,8 +114,9 @@ def _file_of_robot(kind: str, name: str) -> Path | None:
         return None
     folder = find_robot_kind(robot).folder / kind
     if not (folder / f"{rest}.yaml").is_file():
-        names = ", ".join(f"{robot}/{path.stem}" for path in sorted(folder.glob("*.yaml"))) or "none"
-        raise SettingsError(f"the robot {robot} has no such file in {kind}", where=name, do=f"it has: {names}")
+        names = [f"{robot}/{path.stem}" for path in sorted(folder.glob("*.yaml"))]
+        do = f"it has: {', '.join(names) or 'none'}{guess(name, names)}"
+        raise SettingsError(f"the robot {robot} has no such file in {kind}", where=name, do=do)
     return folder / f"{rest}.yaml"
 
 

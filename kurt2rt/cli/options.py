@@ -30,8 +30,12 @@ def _names_in(kind: str) -> Callable[[str], list[str]]:
     """Return what completes the names of settings of a kind, shipped and installed, for a shell."""
 
     def complete(incomplete: str) -> list[str]:
+        # Imported here: the help needs no robots.
+        from config.robot_plugins import plugin_tasks
+
         names = sorted(path.stem for path in (CONFIG_DIR / kind).glob("*.yaml"))
         names += (each.name for each in installed_plugins(kind))
+        names += (each.name for each in plugin_tasks() if kind == "tasks")
         return [name for name in names if name.startswith(incomplete)]
 
     return complete
@@ -94,6 +98,7 @@ RobotName = Annotated[
         metavar=_NAME_OR_PATH,
         help="Robot: a name in config/robots or of a plug-in, or the path of a YAML file. Default: the robot of the "
         "task, which is kurt2 unless the task is of another one, such as school/fleeing.",
+        autocompletion=_names_in("robots"),
     ),
 ]
 SettingsName = Annotated[
@@ -171,6 +176,21 @@ def results_option(default: str) -> Any:
     return typer.Option(
         "--out", help=f"Folder for what is made; created when absent. Default: {default}.", show_default=False
     )
+
+
+def seconds_of(text: str) -> float:
+    """Return the seconds of `90`, `12.34`, `1:30` or `1:02:03`. Raises typer.BadParameter for another form."""
+    *before, last = text.split(":")
+    try:
+        seconds = float(last)
+    except ValueError:
+        seconds = math.nan
+    is_time = 0.0 <= seconds < (60.0 if before else math.inf)
+    if not is_time or len(before) > 2 or not all(each.isdecimal() for each in before):
+        raise typer.BadParameter(f"give seconds such as 12.34, or minutes such as 1:30 (got {text!r})")
+    for power, each in enumerate(reversed(before), start=1):
+        seconds += int(each) * 60.0**power
+    return seconds
 
 
 def changes_of(words: list[str] | None) -> dict[str, str]:

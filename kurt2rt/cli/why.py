@@ -16,7 +16,7 @@ from hal.robot_settings import RobotSettings, load_robot
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, ONLOOKER, local_pairing, read_device
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.options import RecordedRun, RobotAddress, RobotPort, RunsFolder, SettingsName, refuse_if
+from kurt2rt.cli.options import RecordedRun, RobotAddress, RobotPort, RunsFolder, SettingsName, refuse_if, seconds_of
 from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.why_live import ask_why
 from kurt2rt.core.perception.sensor_words import words_for
@@ -25,7 +25,7 @@ from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.runs.explain.recorded import ExplainedMoment, explain_run
 from kurt2rt.runs.explain.terminal import render_timeline, render_why
-from kurt2rt.runs.explain.timeline import build_timeline
+from kurt2rt.runs.explain.timeline import Timeline, build_timeline, telling_moment
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.run_folder import find_run
 from kurt2rt.runs.replay.reader import read_run
@@ -35,6 +35,7 @@ from kurt2rt.service.settings import ServiceSettings, load_service
 _FORMATS = (".png", ".svg", ".pdf")
 """Suffixes of kurt2rt.runs.explain.save_figure, which cannot be imported here: matplotlib is an extra."""
 _REPORT_EVERY = 1000
+_TIME = "SECONDS|M:SS"
 _DONE = TextColumn("{task.completed:.0f} s of the run")
 
 
@@ -42,13 +43,19 @@ _DONE = TextColumn("{task.completed:.0f} s of the run")
 class _Options:
     run: RecordedRun = None
     at: Annotated[
-        float | None, typer.Option(metavar="SECONDS", min=0.0, help="Explain the decision at this second of the run.")
+        float | None,
+        typer.Option(
+            metavar=_TIME,
+            parser=seconds_of,
+            help="Explain the decision at this second of the run. Default: the last touch, else the last question, "
+            "surprise or change of action.",
+        ),
     ] = None
     from_s: Annotated[
-        float, typer.Option("--from", metavar="SECONDS", min=0.0, help="Without --at: the run from this second.")
-    ] = 0.0
+        float | None, typer.Option("--from", metavar=_TIME, parser=seconds_of, help="Tell the run from this second.")
+    ] = None
     to_s: Annotated[
-        float | None, typer.Option("--to", metavar="SECONDS", min=0.0, help="Without --at: up to this second.")
+        float | None, typer.Option("--to", metavar=_TIME, parser=seconds_of, help="Tell the run up to this second.")
     ] = None
     picture: Annotated[Path | None, typer.Option(help="Draw it, too: a file that ends with .png, .svg or .pdf.")] = None
     runs: RunsFolder = None
@@ -72,10 +79,14 @@ class _Options:
     settings: SettingsName = "default"
     as_json: AsJson = False
 
+    @property
+    def is_of_a_part(self) -> bool:
+        """Return whether the course of the run is asked for, or of a part of it."""
+        return self.from_s is not None or self.to_s is not None
+
     def check(self) -> None:
         """Raise typer.BadParameter for options that exclude each other."""
-        of_a_run = self.run is not None or self.at is not None
-        of_a_part = bool(self.from_s) or self.to_s is not None
+        of_a_run, of_a_part = self.run is not None or self.at is not None, self.is_of_a_part
         of_a_robot = any(each is not None for each in (self.device, self.robot, self.port))
         picture = self.picture
         if picture is not None:
@@ -84,7 +95,8 @@ class _Options:
                 picture.suffix not in _FORMATS, f"{picture.name}: give a file that ends with {formats}", "--picture"
             )
         refuse_if(self.at is not None and of_a_part, "give a moment, or a part of the run with --from and --to", "--at")
-        refuse_if(self.to_s is not None and self.to_s <= self.from_s, f"is not after --from {self.from_s:g}", "--to")
+        from_s = self.from_s or 0.0
+        refuse_if(self.to_s is not None and self.to_s <= from_s, f"is not after --from {from_s:g}", "--to")
         refuse_if(self.live and (of_a_run or of_a_part), "is of now; leave out run, --at, --from and --to", "--live")
         refuse_if(of_a_robot and not self.live, "are for a robot that runs; give --live", "--device, --robot, --port")
 
@@ -98,36 +110,49 @@ def why(options: _Options) -> None:
     since. It shows what would have changed the decision, and what the guard made
     of it. If the robot stood, it shows why.
 
-        kurt2rt why --at 12.34 --picture why.png
+        kurt2rt why
+        kurt2rt why --at 1:30 --picture why.png
         kurt2rt why --from 60 --to 90 --picture minute.png
-        kurt2rt why 20261122T031005Z-wall_following
+        kurt2rt why 20261122T031005Z-wall_following --from 0
         kurt2rt why --live
 
-    The run is replayed up to that moment, so the answer uses only what the robot
-    knew then.
+    Without a time it picks the most telling moment, and says which. The run is
+    replayed up to that moment, so the answer uses only what the robot knew then.
     """
     options.check()
     service = load_service(options.settings)
     if options.live:
         _show_live(service, options)
         return
-    recorded = read_run(find_run(options.run, options.runs or Path(service.recordings)), partial=options.at is None)
-    console = console_of()
+    path, console = find_run(options.run, options.runs or Path(service.recordings)), console_of()
+    recorded = read_run(path, partial=options.at is None)
     if options.at is None:
-        _show_timeline(console, recorded, options)
+        timeline = _read_timeline(recorded, options)
+        # A run with gaps cannot be replayed up to a moment.
+        told_whole = options.is_of_a_part or options.as_json or recorded.trouble
+        moment = None if told_whole else telling_moment(timeline)
+        if moment is None:
+            _show_timeline(console, recorded, timeline, options)
+        else:
+            what = f"Most telling at {moment.at_s:.2f} s: {moment.what}. --at picks another moment, --from 0 tells all."
+            print_whole(console, what)
+            _show_decision(console, read_run(path), moment.at_s, options)
     else:
         _show_decision(console, recorded, options.at, options)
     if recorded.trouble and not options.as_json:
         console.print(f"The recording: {recorded.trouble}.", markup=False, highlight=False, soft_wrap=True)
 
 
-def _show_timeline(console: Console, run: Run, options: _Options) -> None:
+def _read_timeline(run: Run, options: _Options) -> Timeline:
     to_s = math.inf if options.to_s is None else options.to_s
     known = (lesson.event for lesson in run.lessons)
     with Progress(TextColumn("reading"), _DONE, console=Console(stderr=True), transient=True) as progress:
         bar = progress.add_task("", total=None)
         entries = _counted(run.partial_entries(), lambda read_s: progress.update(bar, completed=read_s))
-        timeline = build_timeline(entries, run.robot, from_s=options.from_s, to_s=to_s, known=known)
+        return build_timeline(entries, run.robot, from_s=options.from_s or 0.0, to_s=to_s, known=known)
+
+
+def _show_timeline(console: Console, run: Run, timeline: Timeline, options: _Options) -> None:
     if options.as_json:
         numbers = {"from_s": timeline.from_s, "to_s": timeline.to_s, "ticks": timeline.ticks, "missed": timeline.missed}
         told = {**numbers, "stretches": timeline.stretches, "notes": timeline.notes, "trouble": run.trouble}

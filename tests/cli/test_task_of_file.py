@@ -118,6 +118,7 @@ def test_strangers_file_runs_no_code_by_a_name_in_it(kurt2rt: CommandLine, plugi
         ("kurt2rt exam x --task wal", "wall_following"),
         ("kurt2rt exam x --task stro", "strolling"),
         ("kurt2rt run --world manh", "manhattan"),
+        ("kurt2rt train --task school/fl", "school/fleeing"),
     ],
 )
 def test_completion_offers_shipped_and_installed_names(

@@ -8,6 +8,7 @@ import pytest
 
 from hal.robot_settings import load_robot
 from kurt2rt.channel.security.pairing import ONLOOKER, local_pairing
+from kurt2rt.cli.options import seconds_of
 from kurt2rt.cli.why_live import ask_why
 from kurt2rt.teacher.client.answer import NoAnswer, NoAnswerError, no_robot
 from tests.cli.helpers import CommandLine, running
@@ -41,11 +42,29 @@ def test_the_level_above_is_told_too(kurt2rt: CommandLine) -> None:
 
 def test_a_whole_run_is_told_as_stretches(kurt2rt: CommandLine, tmp_path: Path) -> None:
     picture = tmp_path / "run.svg"
-    said = kurt2rt("why", WALLS, "--picture", picture)
+    said = kurt2rt("why", WALLS, "--from", "0", "--picture", picture)
     assert said.exit_code == 0, said.err
     for words in ("stands: stopped", "stands: unsaved", "session walls"):
         assert words in said.out
     assert picture.stat().st_size > 10_000
+
+
+def test_without_a_time_the_last_question_is_explained(kurt2rt: CommandLine) -> None:
+    said = kurt2rt("why", WALLS)
+    assert said.exit_code == 0, said.err
+    found = re.match(r"Most telling at (\d+\.\d\d) s: its last question\.", said.out)
+    assert found is not None
+    assert f" {found[1]} s (tick " in said.out
+
+
+@pytest.mark.parametrize(("typed", "at_s"), [("1:30", 90.0), ("0:01:02.5", 62.5), ("90", 90.0)])
+def test_a_time_is_read_as_minutes_and_seconds(typed: str, at_s: float) -> None:
+    assert seconds_of(typed) == at_s
+
+
+@pytest.mark.parametrize("typed", ["1:90", "soon", "-1", "1::2", "nan", "1:2:3:4"])
+def test_another_form_of_a_time_is_refused(kurt2rt: CommandLine, typed: str) -> None:
+    assert "1:30" in kurt2rt.misused("why", WALLS, f"--at={typed}")
 
 
 def test_a_moment_behind_the_end_is_refused(kurt2rt: CommandLine, tmp_path: Path) -> None:

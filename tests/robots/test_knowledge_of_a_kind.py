@@ -40,8 +40,10 @@ def test_first_task_of_a_robot_is_wall_following() -> None:
 def test_file_that_a_robot_lacks_is_refused_with_those_it_has() -> None:
     with pytest.raises(SettingsError, match=r"the robot school has no such file in tasks; it has: school/circle"):
         find_config("tasks", "school/nope")
-    with pytest.raises(SettingsError, match="no such name in tasks"):
-        find_config("tasks", "nope/nope")
+    with pytest.raises(SettingsError, match=r"did you mean school/fleeing\?"):
+        find_config("tasks", "school/fleing")
+    with pytest.raises(SettingsError, match=r"no such name in tasks; .* did you mean school/fleeing\?"):
+        find_config("tasks", "scool/fleeing")
 
 
 def test_robot_of_an_unknown_kind_is_refused(tmp_path: Path) -> None:

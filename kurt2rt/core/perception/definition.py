@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from config.errors import guess
 from config.settings import Settings, SettingsError, load_settings
 from config.settings_files import find_config
 from hal.robot import HIGHEST_COUNTS
@@ -203,7 +204,9 @@ def load_situation(name_or_path: str, sensors: tuple[str, ...]) -> SituationDefi
     missing = sorted(definition.sensors_used - set(sensors))
     if missing:
         raise SettingsError(
-            f"features: the robot has no sensor {', '.join(missing)}", where=path, do=f"allowed: {', '.join(sensors)}"
+            f"features: the robot has no sensor {', '.join(missing)}",
+            where=path,
+            do=f"allowed: {', '.join(sensors)}{guess(missing[0], sensors)}",
         )
     return definition
 

@@ -4,6 +4,7 @@ import random
 from enum import StrEnum
 from typing import NamedTuple
 
+from config.errors import guess
 from config.settings import SettingsError
 from hal.guard_reason import GuardReason
 from hal.robot import HIGHEST_COUNTS, GuardResult, Robot, SensorReadings, WheelSpeeds
@@ -52,7 +53,7 @@ def parse_break(text: str, infrared: InfraredSettings) -> SensorBreak:
             raise SettingsError(
                 f"there is no {what} {given!r}",
                 where=f"broken sensor {text}",
-                do=f"give SENSOR=FAULT, such as s15=low; the {what}s are {', '.join(known)}",
+                do=f"give SENSOR=FAULT, such as s15=low; the {what}s are {', '.join(known)}{guess(given, known)}",
             )
     return SensorBreak(infrared.names.index(name), FaultKind(kind))
 

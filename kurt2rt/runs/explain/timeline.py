@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import groupby
+from typing import NamedTuple
 
 from hal.odometry import PlanePose, WheelOdometry
 from hal.robot_settings import RobotSettings
@@ -27,6 +28,9 @@ from kurt2rt.runs.recording.entries import DecisionEntry, TickEntry
 
 MOST_SAMPLES = 5000
 """Samples kept of a run, up to twice as many: a picture is no wider."""
+
+
+_TOUCHES = "asks: touches something"
 
 
 class Kind(StrEnum):
@@ -108,6 +112,8 @@ class Timeline:
     """Ticks that were skipped."""
     unrecorded: int = 0
     """Ticks that ran but are not in the recording."""
+    surprised_s: float | None = None
+    """Time of the greatest surprise; None if there was none."""
 
     @property
     def from_s(self) -> float:
@@ -189,6 +195,8 @@ class _Reader:
         self._ticks = self._missed = self._unrecorded = 0
         self._before: TickEntry | None = None
         self._latched = False
+        self._surprised_s: float | None = None
+        self._surprise = 0.0
         self.lessons = LessonDescriber()
 
     @property
@@ -200,6 +208,7 @@ class _Reader:
             self._ticks,
             self._missed,
             self._unrecorded,
+            self._surprised_s,
         )
 
     def update(self, entry: TickEntry) -> bool:
@@ -229,6 +238,8 @@ class _Reader:
         last.to_s = at_s + self._period_s
         self._count(last, entry)
         self._note(entry, told, at_s)
+        if entry.surprise is not None and entry.surprise.surprising and entry.surprise.multiple > self._surprise:
+            self._surprised_s, self._surprise = at_s, entry.surprise.multiple
         if self._ticks % self._every == 0:
             self._samples.append(self._sample(entry, at_s))
             if len(self._samples) == 2 * MOST_SAMPLES:
@@ -271,6 +282,30 @@ class _Reader:
             x_m=self._pose.x_m,
             y_m=self._pose.y_m,
         )
+
+
+class Moment(NamedTuple):
+    """Moment of a run to explain, and what makes it telling."""
+
+    at_s: float
+    """Time from the first tick of the run."""
+    what: str
+
+
+def telling_moment(timeline: Timeline) -> Moment | None:
+    """Return the last touch; without one the last question, the greatest surprise or the last change of action.
+
+    None for a timeline without a tick.
+    """
+    asked = [each for each in timeline.stretches if each.kind is Kind.ASKS]
+    if touched := [each for each in asked if each.what == _TOUCHES]:
+        return Moment(touched[-1].from_s, "its last touch")
+    if asked:
+        return Moment(asked[-1].from_s, "its last question")
+    if timeline.surprised_s is not None:
+        return Moment(timeline.surprised_s, "its greatest surprise")
+    driven = [each for each in timeline.stretches if each.kind is Kind.DRIVES] or timeline.stretches
+    return Moment(driven[-1].from_s, "its last change of action") if driven else None
 
 
 def kind_intervals(timeline: Timeline, kind: Kind) -> tuple[tuple[float, float], ...]:
@@ -317,7 +352,7 @@ def _classified(entry: TickEntry) -> tuple[Kind, str]:
     if decision.action is not None:
         return (Kind.LED if decision.cause is DecisionCause.TEACHER else Kind.DRIVES), decision.action
     if decision.cause is DecisionCause.TOUCHES:
-        return Kind.ASKS, "asks: touches something"
+        return Kind.ASKS, _TOUCHES
     if decision.cause is DecisionCause.DOUBT:
         return Kind.ASKS, "asks: doubts"
     if decision.cause is DecisionCause.UNKNOWN:

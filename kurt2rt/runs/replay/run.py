@@ -166,7 +166,7 @@ class Run:
         raise RecordingError(
             f"is there from its tick {first.number} on; the {minutes:.1f} min before have gone to make room "
             "for later ones, and with them what was known at the start, so it can neither be replayed nor "
-            "one of its decisions be explained. kurt2rt why without --at tells what is there",
+            "one of its decisions be explained. kurt2rt why --from 0 tells what is there",
             where=self.name,
             do="raise recordings_mb for the next",
         )
