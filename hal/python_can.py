@@ -20,12 +20,17 @@ class Kurt2rtBus(SharedBus):
     """End of a shared bus as python-can's tools expect it: frames have the time since 1970, and all filters hold."""
 
     def __init__(
-        self, channel: str, *, can_filters: can.typechecking.CanFilters | None = None, fd: bool = False, **options: Any
+        self,
+        channel: str | None = None,
+        *,
+        can_filters: can.typechecking.CanFilters | None = None,
+        fd: bool = False,
+        **options: Any,
     ) -> None:
         """Join a bus; frames count from now.
 
         Args:
-            channel: name of the bus, such as desk or shared:desk.
+            channel: name of the bus, such as desk or shared:desk; None is refused with the names that are there.
             can_filters: filters of python-can; None: all frames.
             fd: must be False, because the robot's bus is classic CAN.
             options: `receive_own_messages` must be False; others, such as a bit rate, have no effect in memory.
@@ -33,6 +38,9 @@ class Kurt2rtBus(SharedBus):
         Raises:
             can.CanInitializationError: the bus cannot be joined, or an option asks for what it cannot do.
         """
+        if channel is None:
+            names = ", ".join(shared_bus_names()) or "none yet; kurt2rt sim --bus shared:desk makes one"
+            raise can.CanInitializationError(f"{INTERFACE}: give a channel; there are: {names}")
         if fd or options.get("receive_own_messages"):
             raise can.CanInitializationError(
                 f"{INTERFACE} {channel}: CAN FD and receive_own_messages are not supported; leave both out"

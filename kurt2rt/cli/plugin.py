@@ -79,4 +79,5 @@ def new(
     """
     for path in write_skeleton(kind, name, out):
         typer.echo(path)
-    typer.echo(f"next: pytest {out / name}")
+    folder, uses = out / name, {"learners": f"study compare --learner {name}", "robots": f"demo --task {name}/fleeing"}
+    typer.echo(f"next:\n  pip install -e {folder}\n  pytest {folder}\n  kurt2rt {uses[kind.value]}")

@@ -124,7 +124,7 @@ def teach(options: _Options) -> None:
         kurt2rt teach --device phone --robot 192.168.0.7
 
     With --terminal, an action answers or corrects, Enter alone stops the robot,
-    help shows the rest. Page and terminal wait for a robot that is not there yet.
+    help shows the rest. The page waits for a robot that is not there yet.
     With --auto, a simulated robot is taught for as long as the task says.
 
     Ends on Ctrl-C. A robot that was driven by hand from the page is stopped;

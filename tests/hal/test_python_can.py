@@ -1,6 +1,7 @@
 """python-can's tools and `can.Bus` on a shared bus, by the plug-in."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -93,6 +94,11 @@ def test_open_bus_is_detected(name: str, robot: SharedBus) -> None:
     found = can.detect_available_configs(INTERFACE)
     assert [each["channel"] for each in found].count(name) == 1
     assert {each["interface"] for each in found} == {INTERFACE}
+
+
+def test_bus_without_a_channel_is_refused_with_those_that_are_there(name: str) -> None:
+    with SharedBus(name), pytest.raises(can.CanInitializationError, match=rf"there are: .*\b{re.escape(name)}\b"):
+        can.Bus(interface=INTERFACE)
 
 
 @pytest.mark.parametrize(

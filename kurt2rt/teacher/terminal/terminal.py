@@ -33,7 +33,8 @@ from kurt2rt.core.teaching.commands import (
     Take,
     Teach,
 )
-from kurt2rt.teacher.client.answer import Answer, NoAnswerError
+from kurt2rt.runs.explain.reasons import format_decision
+from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.terminal.terminal_text import (
     KINDS,
@@ -114,7 +115,6 @@ _STEP_S = 0.5
 _LESSONS_SHOWN = 10
 _LESSONS_SEARCHED = 20
 _REPORT_PERIOD_S = 1.0
-_RETRY_S = 0.5
 _POLL_S = 0.5
 _SILENT_AFTER_S = 1.5
 _MOST_DIGITS = 15
@@ -145,16 +145,14 @@ class TerminalTeacher:
         self._say = say
         self._where = where
         self._hello: Hello | None = None
-        self._tried = anyio.Event()
-        """Set after the first try to reach the robot."""
-        self._met = False
+        self._met = anyio.Event()
         self._last_stop = anyio.Event()
         self._last_stop.set()
 
     async def teach(self) -> None:
         """Teach until the lines end or one of them is `quit`, then stop the robot. It may restart meanwhile.
 
-        Raises NoAnswerError if the robot does not answer the last stop.
+        Raises NoAnswerError in a group if there is no robot.
         """
         async with anyio.create_task_group() as tasks:
             typed, taken = anyio.create_memory_object_stream[_Line](math.inf)
@@ -162,13 +160,12 @@ class TerminalTeacher:
                 tasks.start_soon(self._listen, typed, tasks)
                 tasks.start_soon(self._session, tasks)
                 tasks.start_soon(self._poll_link)
+                await self._met.wait()
                 async for line in taken:
-                    await self._tried.wait()
                     if line.text.split() in (["quit"], ["exit"]):
                         break
                     await self._on_line(line)
-                await self._tried.wait()
-                if self._met and await self._attempt(self._send(self._robot.stop())):
+                if await self._attempt(self._send(self._robot.stop())):
                     await self._attempt(self._send(self._robot.send(HandOver)))
                 tasks.cancel_scope.cancel()
 
@@ -191,8 +188,6 @@ class TerminalTeacher:
             self._say(f"not done, you stopped the robot after you typed it: {line.text}")
         elif line.state is not None and self._robot.state is not None and line.state.boot != self._robot.state.boot:
             self._say(f"not done, the robot program was restarted after you typed it: {line.text}")
-        elif not self._met:
-            self._say(f"not done, there is no robot at {self._where} yet: {line.text}")
         else:
             await self._attempt(self._execute(line))
 
@@ -204,8 +199,7 @@ class TerminalTeacher:
             self._say(hello.what)
         self._say_all(name_lines(hello))
         await self._attempt(self._send(self._robot.send(Take)))
-        self._met = True
-        self._tried.set()
+        self._met.set()
         tasks.start_soon(self._report_states)
         boot = hello.boot
         async for state in self._robot.states():
@@ -219,18 +213,14 @@ class TerminalTeacher:
         return NO_WORDS if self._hello is None else self._hello.sensor_words
 
     async def _connect(self) -> Hello:
-        told = ""
-        while True:
-            try:
-                return await self._robot.hello()
-            except NoAnswerError as error:
-                why = str(error) if isinstance(error.__cause__, WireError) else self._robot.trouble
-                sentence = f"no robot at {self._where} yet" + (f": {why}" if why else "")
-                if sentence != told:
-                    self._say(sentence)
-                told = sentence
-                self._tried.set()
-                await anyio.sleep(_RETRY_S)
+        try:
+            return await self._robot.hello()
+        except NoAnswerError as error:
+            if isinstance(error.__cause__, WireError):  # a robot of another version
+                raise
+            why = f" ({self._robot.trouble})" if self._robot.trouble else ""
+            do = "start one in another terminal: kurt2rt run"
+            raise NoAnswerError(f"at {self._where}{why}", NoAnswer.NO_ROBOT, do=do) from error
 
     async def _reconnect(self) -> None:
         self._hello = await self._robot.hello()
@@ -319,6 +309,9 @@ class TerminalTeacher:
             case ["lessons"]:
                 for each in reversed(await robot.lessons(_LESSONS_SHOWN)):
                     self._say_all(lesson_lines(each))
+            case ["why"]:
+                facts = await robot.why()
+                self._say("it has not decided yet" if facts is None else format_decision(facts))
             case ["health"]:
                 self._say_all(lines_of(await robot.health()))
             case ["way"] if hello.mid is not None and state is not None and state.mid is not None:

@@ -29,6 +29,7 @@ step ACTION [SECONDS]    one action for half a second, or as long as you say; te
 hold ACTION SECONDS      does the action, and is taught it in the situations on the way; then it drives on
 rewind SECONDS ACTION    corrects what it did that long before it stopped (up to 60 s)
 +, -                     reward or punish the action that drives
+why                      explain what it does now
 lessons                  show the last ten lessons
 health                   late ticks, sensors, bus, disk; faults and their cures
 help, quit"""

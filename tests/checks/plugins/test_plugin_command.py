@@ -30,7 +30,9 @@ def test_kinds_of_the_command_line_are_all_kinds() -> None:
 def test_skeleton_installs_and_passes_its_tests(kurt2rt: CommandLine, plugin_folder: Path, kind: SkeletonKind) -> None:
     name = f"own_{kind}"
     made = kurt2rt("plugin", "new", kind, name, "--out", "out")
-    assert made.out.splitlines()[-1] == f"next: pytest out/{name}", made.err
+    steps = made.out.split("next:\n")[1].splitlines()
+    assert [each.split()[:3] for each in steps[:2]] == [["pip", "install", "-e"], ["pytest", f"out/{name}"]], made.err
+    assert steps[2].startswith("  kurt2rt ")
     with started("pytest", "-q", "-p", "no:cacheprovider", f"out/{name}", folder=plugin_folder) as tests:
         said = tests.communicate()[0]
     assert tests.returncode == 0, said

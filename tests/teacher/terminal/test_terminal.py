@@ -1,7 +1,6 @@
 """TerminalTeacher with a real client, a robot whose answers are the test's, and typed lines."""
 
 import os
-import socket
 import threading
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
@@ -11,6 +10,8 @@ from pathlib import Path
 import anyio
 import pytest
 
+from config.errors import ExitCode
+from kurt2rt.channel.protocol.codec import FACTS
 from kurt2rt.channel.protocol.health import HEALTH
 from kurt2rt.channel.protocol.hello import AppraisalName
 from kurt2rt.channel.protocol.lesson_list import LessonLine
@@ -20,6 +21,7 @@ from kurt2rt.channel.protocol.requests import (
     LessonsRequest,
     SituationsRequest,
     StopRequest,
+    WhyRequest,
 )
 from kurt2rt.channel.security.pairing import Pairing, pair
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
@@ -39,7 +41,9 @@ from kurt2rt.core.teaching.commands import (
     Take,
     Teach,
 )
+from kurt2rt.runs.explain.reasons import format_decision
 from kurt2rt.teacher import TeacherClient
+from kurt2rt.teacher.client.answer import NoAnswer, NoAnswerError
 from kurt2rt.teacher.terminal.terminal import TerminalTeacher
 from kurt2rt.teacher.terminal.terminal_text import (
     format_critic_change,
@@ -47,10 +51,13 @@ from kurt2rt.teacher.terminal.terminal_text import (
     format_opinion,
 )
 from tests.channel.states import COMMANDS, SURPRISED, state
+from tests.runs.explain.helpers import facts, level, story
 from tests.service.health.reports import ILL
 from tests.teacher.client.test_client import HELLO, LONGEST_S, Clock, be_patient, seen
 from tests.teacher.page.fake_robot import A_HELLO
 from tests.teacher.stand_in_robot import Message, StandInRobot, in_a_task_of_its_own, stand_in_robot
+
+FACTS_NOW = facts(level((1.0,), story(1, (1.0,), "back", 0.0)))
 
 
 @dataclass
@@ -95,6 +102,8 @@ class RobotStub:
             return Reply(ReplyStatus.DONE, HELLO)
         if isinstance(request, LessonsRequest):
             return Reply(ReplyStatus.DONE, {"lessons": []})
+        if isinstance(request, WhyRequest):
+            return Reply(ReplyStatus.DONE, {"why": FACTS.plain_of(FACTS_NOW)})
         if isinstance(request, HealthRequest):
             return Reply(ReplyStatus.DONE, {"health": HEALTH.plain_of(ILL)})
         if isinstance(request, SituationsRequest):
@@ -149,6 +158,14 @@ async def looked_at(console: Console, robot: StandInRobot, **changes: object) ->
     picture = robot.show(**changes)
     await seen(console.client, lambda: console.client.state == picture)
     return picture.tick
+
+
+async def test_why_explains_what_the_robot_does_now(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
+        console.type("why")
+        said = await console.reads(format_decision(FACTS_NOW))
+    assert "RLA 1" in said
 
 
 async def test_health_prints_the_report_and_cures(pairing: Pairing, robot: StandInRobot) -> None:
@@ -244,34 +261,17 @@ async def test_invalid_line_does_not_end_teaching(pairing: Pairing, robot: Stand
         await console.reads("/phase is done")
 
 
-async def test_teach_waits_for_a_robot_that_is_not_there(pairing: Pairing) -> None:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
-        taken.bind(("127.0.0.1", 0))
-        port = taken.getsockname()[1]
-    async with AsyncExitStack() as stack:
-        console = await stack.enter_async_context(in_a_task_of_its_own(console_at(pairing, port, patience_s=0.3)))
-        await console.reads(f"no robot at 127.0.0.1:{port} yet")
-        console.type("forward")
-        await console.reads(f"not done, there is no robot at 127.0.0.1:{port} yet: forward")
-        be_patient(console.client)
-        async with stand_in_robot(pairing.teacher.parent, port=port) as robot:
-            robot.mind = RobotStub()
-            robot.show(teacher="phone")
-            await console.reads("actions: forward, spin_left")
-            await console.reads("/take is done")
-            assert robot.all_of(Teach) == []
-            await looked_at(console, robot, nearest=None)
-            console.type("forward")
-            await robot.hears(Teach)
-            await stack.aclose()
-
-
-async def test_quit_without_a_robot_ends_at_once(pairing: Pairing) -> None:
-    with anyio.fail_after(LONGEST_S):
-        async with console_at(pairing, 9, patience_s=0.2) as console:
-            console.type("quit")
-    (said,) = console.said
-    assert "127.0.0.1:9" in said
+async def test_a_robot_that_is_not_there_ends_teaching(pairing: Pairing) -> None:
+    with pytest.raises(BaseExceptionGroup) as ended:
+        async with console_at(pairing, 9, patience_s=0.2):
+            await anyio.sleep(LONGEST_S)
+    error = ended.value
+    while isinstance(error, BaseExceptionGroup):
+        (error,) = error.exceptions
+    assert isinstance(error, NoAnswerError)
+    assert (error.code, error.exit_code) == (NoAnswer.NO_ROBOT, ExitCode.REFUSED)
+    assert str(error).startswith("no robot")
+    assert "127.0.0.1:9" in str(error)
 
 
 @pytest.mark.parametrize("teacher", [None, "anna"])
