@@ -96,7 +96,7 @@ def test_open_bus_is_detected(name: str, robot: SharedBus) -> None:
     assert {each["interface"] for each in found} == {INTERFACE}
 
 
-def test_bus_without_a_channel_is_refused_with_those_that_are_there(name: str) -> None:
+def test_bus_without_a_channel_is_refused_with_their_names(name: str) -> None:
     with SharedBus(name), pytest.raises(can.CanInitializationError, match=rf"there are: .*\b{re.escape(name)}\b"):
         can.Bus(interface=INTERFACE)
 
