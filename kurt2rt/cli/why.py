@@ -35,6 +35,8 @@ from kurt2rt.service.settings import ServiceSettings, load_service
 _FORMATS = (".png", ".svg", ".pdf")
 """Suffixes of kurt2rt.runs.explain.save_figure, which cannot be imported here: matplotlib is an extra."""
 _REPORT_EVERY = 1000
+_MOST_PARTS = 40
+"""Parts of a run that are listed; if it has more, those in which it did not drive by itself."""
 _TIME = "SECONDS|M:SS"
 _DONE = TextColumn("{task.completed:.0f} s of the run")
 
@@ -59,14 +61,6 @@ class _Options:
     ] = None
     picture: Annotated[Path | None, typer.Option(help="Draw it, too: a file that ends with .png, .svg or .pdf.")] = None
     runs: RunsFolder = None
-    limit: Annotated[
-        int,
-        typer.Option(
-            metavar="N",
-            min=1,
-            help="Most parts of a run to list; if it has more, those in which it did not drive by itself.",
-        ),
-    ] = 40
     live: Annotated[
         bool, typer.Option("--live", help="Ask a running robot what it decides now, and why, instead of a recording.")
     ] = False
@@ -158,7 +152,7 @@ def _show_timeline(console: Console, run: Run, timeline: Timeline, options: _Opt
         told = {**numbers, "stretches": timeline.stretches, "notes": timeline.notes, "trouble": run.trouble}
         print_json({"run": run.name, "task": run.head.task, **told, "picture": options.picture})
     else:
-        print_whole(console, render_timeline(timeline, _of(run), options.limit))
+        print_whole(console, render_timeline(timeline, _of(run), _MOST_PARTS))
     if options.picture is not None:
         # Late import: matplotlib is an extra that a robot does not need.
         from kurt2rt.runs.explain.timeline_picture import draw_timeline

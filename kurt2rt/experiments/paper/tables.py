@@ -31,7 +31,7 @@ from kurt2rt.experiments.study.exam_tables import (
     success_text,
 )
 from kurt2rt.experiments.study.intervals import collisions_in_10_min, quartiles, right_rate
-from kurt2rt.experiments.study.report import Section, spans, write_report
+from kurt2rt.experiments.study.report import FOOTER, Section, spans, write_report
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.study.table import (
     ROBOTS,
@@ -417,8 +417,7 @@ def tell(plan: StudyPlan[PaperExtent], factory: SimulationFactory, command: str)
         reasons=reasons,
         extent="" if extent.is_whole else "".join(limits),
         command=command,
-        footer=f"Seeds {seeds}. {{versions}}. Source: {{source}}. The same command with the same versions gives the "
-        "same numbers on the same kind of machine. One robot's lessons: `kurt2rt knowledge show` with a file of the "
+        footer=f"Seeds {seeds}. {FOOTER} One robot's lessons: `kurt2rt knowledge show` with a file of the "
         "folder `knowledge` next to this report.",
     )
     return Told(tables, sentence, _short_table(study, tables[0].note), reasons, {"report": path})

@@ -36,7 +36,7 @@ from kurt2rt.experiments.study.exam_tables import (
     success_text,
 )
 from kurt2rt.experiments.study.intervals import TEN_MIN_S, Rate, quartiles, rate_of
-from kurt2rt.experiments.study.report import Section, spans, write_report
+from kurt2rt.experiments.study.report import FOOTER, Section, spans, write_report
 from kurt2rt.experiments.study.study_plan import Group, StudyPlan
 from kurt2rt.experiments.study.table import (
     Column,
@@ -372,8 +372,7 @@ def tell(plan: StudyPlan[PhasesTask], command: str) -> Told:
         ),
         reasons=reasons,
         command=command,
-        footer=f"Seeds {seeds}. {{versions}}. Source: {{source}}. The same command with the same versions gives the "
-        "same numbers on the same kind of machine. What a robot knew after a step: `kurt2rt knowledge show` with a "
+        footer=f"Seeds {seeds}. {FOOTER} What a robot knew after a step: `kurt2rt knowledge show` with a "
         "file of the folder `knowledge` next to this report.",
     )
     return Told(tables, sentence, tables[0], reasons, {"report": path})
