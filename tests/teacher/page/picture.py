@@ -47,7 +47,7 @@ def _teach(phone: Phone, room: Classroom) -> None:
     phone.touch("[data-action=along_left_wall]")
     phone.wait(lambda: phone.text("#sentence").startswith("RLA 1 "), "it drives")
     phone.pass_time(0.5)
-    phone.wait(lambda: phone.has("#why.asks"), "it asks")
+    phone.wait(lambda: phone.has("#why.asks.drawn"), "it asks")
     phone.show("1")
     phone.finger_down(*phone.middle("[data-action=spin_right]"))
     phone.wait(lambda: "lessons: 1" in phone.text("#said"), "the hold has taught")

@@ -407,14 +407,42 @@ def test_room_fills_its_box_and_what_lies_ahead_is_red(a_lesson: Lesson) -> None
         share, red = a_lesson.phone.run(_PAINTED)
         return float(share), int(red)
 
-    a_lesson.begin(of_robot(actions=ACTIONS, what="Teach it to follow the wall on its left"), **STANDS)
+    a_lesson.begin(of_robot(actions=ACTIONS, what="Follow the wall on its left"), left_m_s=0.0, right_m_s=0.0)
+    a_lesson.phone.wait(lambda: painted()[0] > 0, "the room has come")
     standing, red = painted()
-    a_lesson.show(left_m_s=0.6, right_m_s=0.6, cause="rla", action="forward", rla=1)  # its front sees 0.31 m
+    a_lesson.show(left_m_s=0.6, right_m_s=0.6)  # its front sees 0.31 m
     a_lesson.phone.wait(lambda: painted()[1] > red + 50, "its way into what it sees is red")
     assert standing > 0.6
     a_lesson.show(place=None)
     a_lesson.phone.wait(lambda: a_lesson.phone.shows("#robot-view"), "without a room the robot is shown alone")
     assert not a_lesson.phone.shows("#world-view")
+
+
+_BODY = """
+const canvas = document.querySelector("#world-view");
+const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+const pale = [...Array(data.length / 4).keys()].filter((i) => data[4 * i] === 0xdb && data[4 * i + 2] === 0xf5);
+const middle = (of) => pale.reduce((sum, i) => sum + of(i), 0) / pale.length * canvas.clientWidth / canvas.width;
+const box = canvas.getBoundingClientRect();
+return [box.left + middle((i) => i % canvas.width), box.top + middle((i) => Math.floor(i / canvas.width))];
+"""
+
+
+def test_robot_is_dragged_along_the_axes_of_a_turned_room(a_lesson: Lesson) -> None:
+    phone = a_lesson.phone
+    a_lesson.begin()
+    phone.wait(lambda: phone.shows("#world-view"), "the room has come")
+    x, y = phone.run(_BODY)
+    phone.finger_down(x, y)
+    for _ in range(2):  # as a finger that rests: a browser keeps the tap after a flick to itself
+        phone.finger_to(x - 60, y + 30)
+        phone.pass_time(0.5)
+    phone.finger_up()
+    phone.wait(lambda: a_lesson.robot.told_of("/world/place"), "it is put there")
+    ((_, x_m, y_m, heading_rad),) = a_lesson.robot.told_of("/world/place")
+    assert heading_rad == A_PLACE.heading_rad
+    down, left = x_m - A_PLACE.x_m, A_PLACE.y_m - y_m
+    assert (round(left / down, 1), left > 0.5) == (2.0, True), "the right of the picture is up in the room"
 
 
 # The mid level.
