@@ -23,7 +23,6 @@ from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
 from kurt2rt.experiments.lockstep.lesson import LessonCounts
 from kurt2rt.experiments.study.exam_tables import curriculum_as_data, lesson_table, seeds_tables, success_text
 from kurt2rt.experiments.study.jobs import require_places
-from kurt2rt.experiments.study.report import tell_with_report
 from kurt2rt.experiments.study.seeds import forget_lost_robots, forget_result, make_plan, read_results
 from kurt2rt.experiments.study.study_plan import EngineRequest
 from kurt2rt.experiments.study.table import Told, as_rich
@@ -135,6 +134,9 @@ def _one_seed(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
 
 
 def _many_seeds(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
+    # Not at the top: reports are an extra, and one robot is taught without it.
+    from kurt2rt.experiments.study.report import tell_with_report
+
     parts = job_parts(setup.robot, out)
     plan = make_plan(setup.task, options.all_seeds, parts, engine=options.requested_engine())
     forget_lost_robots(plan)
