@@ -70,6 +70,6 @@ def _ever_shorter(told: "Told", files: list[str]) -> Iterator[list[RenderableTyp
     for count in range(len(rows), -1, -1):
         kept = rows if count == len(rows) else missed_first[:count]
         left = f"More rows in the report: {len(rows) - count}." if count < len(rows) else ""
-        text = " ".join(filter(None, (note, left)))
+        text = " ".join(filter(None, (left, note)))
         table = [] if told.short is None else [as_rich(replace(told.short, rows=tuple(kept), note=text))]
         yield [told.sentence, *table, *to_copy, *files]

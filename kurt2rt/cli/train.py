@@ -147,8 +147,7 @@ def _many_seeds(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
         told = {"task": task.name, "teacher": task.teaching.profile.name, "robots": data}
         tables = list(seeds_tables(robots, task))
         passed = success_text([drive for each in robots for drive in each.drives])
-        sentence = f"{passed} exams without a teacher were passed, by {len(robots)} robots."
-        result = Told(tables, sentence, tables[2], data=told)
+        result = Told(tables, f"Exams passed without a teacher: {passed}.", short=tables[2], data=told)
         return tell_with_report(out, f"KURT2: {task.name} taught to {len(robots)} robots", result, setup.command)
 
     run_study(plan, options, tell)

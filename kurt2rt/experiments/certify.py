@@ -22,7 +22,7 @@ from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of
 from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of, wilson_interval
 from kurt2rt.experiments.study.jobs import SEED, JobParts, Outcome, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash
-from kurt2rt.experiments.study.report import FOOTER, Section, write_report
+from kurt2rt.experiments.study.report import tell_with_report
 from kurt2rt.experiments.study.study_plan import BusWitnessJob, StudyPlan
 from kurt2rt.experiments.study.table import (
     Column,
@@ -312,17 +312,13 @@ def _clustered(counts: Sequence[int], hours: Sequence[float]) -> Rate:
     return rate_of([sum(counts[i : i + size]) for i in starts], [sum(hours[i : i + size]) for i in starts])
 
 
+_PLACE: Column = ("world", lambda each: label_of(each.place))
+
+
 def all_tables(
     plan: StudyPlan[Certified], summaries: Sequence[PlaceSummary], worst: Sequence[DriveRow]
 ) -> Iterator[Table]:
     """Yield all tables: probabilities, rates and, if there are any, the worst runs."""
-
-    def chance(name: str) -> Callable[[PlaceSummary], str]:
-        def cell(each: PlaceSummary) -> str:
-            found: Share = getattr(each, name)
-            return f"{found.value:.2%} ({to_text(found[2:], '.2%')})"
-
-        return cell
 
     def in_an_hour(name: str) -> Callable[[PlaceSummary], str]:
         def cell(each: PlaceSummary) -> str:
@@ -334,25 +330,18 @@ def all_tables(
     def seconds(time_s: float) -> str:
         return f"{time_s:.1f}" if time_s else ""
 
-    place: Column = ("world", lambda each: label_of(each.place))
-    yield table_of(
+    yield _shares_table(
         f"Probability within {plan.about.task.exam.duration_s:g} s of {plan.about.task.name}",
         summaries,
-        place,
-        ("runs", lambda each: each.runs),
-        ("a collision", chance("collided")),
-        ("stuck", chance("stuck")),
-        ("a question", chance("asked")),
-        ("stopped by a watch", chance("stopped")),
-        ("none of these", chance("clean")),
-        note="With 95 % intervals (Wilson). Each run is another robot: gains and turns of its sensors, their noise, "
+        lambda share: f"{share.value:.2%} ({to_text(share[2:], '.2%')})",
+        "With 95 % intervals (Wilson). Each run is another robot: gains and turns of its sensors, their noise, "
         "the slip of its wheels, start and world follow from the run's number. A run ends where the robot is stuck or "
-        f"stopped. {_format_witnesses(plan)}",
+        f"stopped by a watch. {_format_witnesses(plan)}",
     )
     yield table_of(
         "In an hour of driving",
         summaries,
-        place,
+        _PLACE,
         ("hours", lambda each: f"{each.hours:.1f}"),
         ("collisions", in_an_hour("collisions_per_hour")),
         ("first question", in_an_hour("first_questions_per_hour")),
@@ -381,23 +370,25 @@ def all_tables(
         )
 
 
-def _short_table(summaries: Sequence[PlaceSummary], has_worst: bool) -> Table:
-    """Return the probabilities without their intervals, for a terminal; a command to copy follows the worst run."""
+def _shares_table(
+    title: str, summaries: Sequence[PlaceSummary], text: Callable[[Share], str] = "{0.value:.2%}".format, note: str = ""
+) -> Table:
+    """Return the shares of runs by world, each as `text`, by itself without its interval."""
 
     def chance(heading: str, name: str) -> Column:
-        return heading, lambda each: f"{getattr(each, name).value:.2%}"
+        return heading, lambda each: text(getattr(each, name))
 
     return table_of(
-        "Share of the runs, by world",
+        title,
         summaries,
-        ("world", lambda each: label_of(each.place)),
+        _PLACE,
         ("runs", lambda each: each.runs),
         chance("a collision", "collided"),
         chance("stuck", "stuck"),
         chance("a question", "asked"),
         chance("stopped", "stopped"),
-        chance("none", "clean"),
-        note="The worst run once more:" if has_worst else "",
+        chance("none of these", "clean"),
+        note=note,
     )
 
 
@@ -435,44 +426,27 @@ def tell(plan: StudyPlan[Certified], again: Sequence[BlockJob], words: Sequence[
     exam` drives a run so. `command`: typed words of the study, without those that belong to the machine alone. Raises
     BatchDiffersError if a run had another outcome when it was driven again, StudyError, OSError.
     """
-    (task, knowledge, _, runs), path = plan.about, plan.results.folder / "report.html"
+    task, knowledge, _, runs = plan.about
     broken = {run.number: run.broken for run in runs}
     worst = [job.before for job in again if job.before is not None]
     drives = read_drives(plan)
     summaries = list(summarise(plan, drives))
-    tables = list(all_tables(plan, summaries, worst))
     commands = []
     for run in worst:
         sensor = ["--broken-sensor", broken[run.seed]] if broken[run.seed] else []
         exam = ["kurt2rt", "exam", str(knowledge), "--seed", str(run.seed), "--world", run.world]
         commands.append(shlex.join([*exam, *sensor, *words]))
-    pictures = list(draw_worst(again, commands))
-    all_runs = summarise_runs(ALL, drives)
     sentence = (
-        f"{of_text(all_runs.clean.events, len(drives), interval=True)} runs of {task.exam.duration_s:g} s had no "
-        f"collision and no question, and were not stuck or stopped; {all_runs.collided.events} collided."
+        f"{of_text(sum(map(_is_clean, drives)), len(drives), interval=True)} runs of {task.exam.duration_s:g} s had no "
+        f"collision and no question, and were not stuck or stopped; {sum(run.collisions > 0 for run in drives)} "
+        "collided."
     )
-    told = (
+    about = (
         f"A taught robot drove {task.exam.duration_s:g} s in simulation, without a teacher, once for each number from "
         f"{runs[0].number} to {runs[-1].number}. A number makes the robot with the spread of its sensors, its noise "
         "and slip, its start and its world. The simulated robot stands in for a real one: slopes, carpets, people and "
-        "sunlight are not in it."
-    )
-    driven_again = (
-        "Each was driven again on the CAN bus, with the same outcome. The line below a picture is the command that "
-        "shows it again."
-    )
-    write_report(
-        path,
-        f"KURT2: certificate of a robot that was taught {task.name}",
-        (
-            Section("", (sentence,), pictures=pictures[:1]),
-            Section("Tables", (told,), tables),
-            *([Section("Worst runs", (driven_again,), pictures=pictures[1:])] if pictures else ()),
-            Section("How this was made"),
-        ),
-        command=command,
-        footer=FOOTER,
+        "sunlight are not in it. The worst runs were driven again for their pictures, on the CAN bus and with the same "
+        "outcome. The line below a picture is the command that shows it again."
     )
     found = [
         {**each.model_dump(exclude=_LEFT_OUT), "broken": broken[each.seed], "command": word}
@@ -480,4 +454,8 @@ def tell(plan: StudyPlan[Certified], again: Sequence[BlockJob], words: Sequence[
     ]
     data = {"knowledge": knowledge, "task": task.name, "seconds": task.exam.duration_s, "places": summaries}
     data |= {"compared": len(plan.witnesses), "worst": found}
-    return Told(tables, sentence, _short_table(summaries, bool(commands)), (), {"report": path}, commands, data)
+    tables = list(all_tables(plan, summaries, worst))
+    short = _shares_table("Share of the runs", summaries, note="The worst run once more:" if commands else "")
+    told = Told(tables, sentence, (about,), short, lines=commands, data=data)
+    title = f"KURT2: certificate of a robot that was taught {task.name}"
+    return tell_with_report(plan.results.folder, title, told, command, list(draw_worst(again, commands)))

@@ -260,14 +260,14 @@ def tell(plan: StudyPlan[Compared], command: str) -> Told:
         total("collisions", "lesson.collisions"),
         words=2,
     )
-    (_, (shipped, *others)), *_ = group_by(rows, lambda row: row.of[0])
-    best = max((_passed_at(row, -1) for row in others), default=0)
-    sentence = (
-        f"Of robots taught {shipped.of[0]}, {passed(shipped)} pass with the RLA system, and {best} with the "
-        "best other learner."
-    )
+    found = []
+    for task, (shipped, *others) in group_by(rows, lambda row: row.of[0]):
+        best = max(others, key=lambda row: _passed_at(row, -1), default=None)
+        other = f" and {passed(best)} with the best other, {best.of[1].title}" if best else ""
+        found.append(f"{task}: {passed(shipped)} with the RLA system{other}")
+    sentence = f"Robots that pass: {'; '.join(found)}."
     tables, reasons = list(all_tables(rows, plan)), list(reasons_against_judging(plan.seeds))
-    told = Told(tables, sentence, short, reasons, {"figure": figure})
+    told = Told(tables, sentence, (), short, reasons, {"figure": figure})
     picture = SavedFigure(figure, "Robots that pass, by presses", "The band is the 95 % interval of the RLA system.")
     return tell_with_report(plan.results.folder, "KURT2: learners compared", told, command, [picture])
 

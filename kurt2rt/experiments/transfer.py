@@ -278,12 +278,13 @@ def tell(plan: StudyPlan[Transfer], command: str) -> Told:
     study, figure = read_study(plan), plan.results.folder / "transfer.png"
     draw_curves(study, figure)
     tables, after = list(all_tables(study)), plan.about.after
-    sentence = "; ".join(
-        f"{of_text(_right_after(each, after[-1]), len(_judged_of(each)), interval=True)} robots are right in "
-        f"{each.of} after {after[-1]} presses there, {_right_after(each, after[0])} after {after[0]}"
+    right = "; ".join(
+        f"in {each.of} {_right_after(each, after[0])} after {after[0]} presses there, and after {after[-1]} "
+        f"{of_text(_right_after(each, after[-1]), len(_judged_of(each)), interval=True)}"
         for each in study.there
     )
-    told = Told(tables, f"{sentence}.", tables[0], list(reasons_against_judging(plan.seeds)), {"figure": figure})
+    reasons = list(reasons_against_judging(plan.seeds))
+    told = Told(tables, f"Robots that are right: {right}.", (), tables[0], reasons, {"figure": figure})
     caption = "The band is the 95 % interval."
     picture = SavedFigure(figure, "Robots that are right in the new world, by presses there", caption)
     title = f"KURT2: {plan.about.task.name.replace('_', ' ')} in a new world"

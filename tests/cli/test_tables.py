@@ -14,7 +14,7 @@ VERDICTS = [
     for number in range(40)
 ]
 TARGETS = targets_table(VERDICTS, ())
-TOLD = Told([TARGETS], "39 of 40 robots are right.", TARGETS, files={"report": Path("made/report.html")})
+TOLD = Told([TARGETS], "39 of 40 robots are right.", short=TARGETS, files={"report": Path("made/report.html")})
 
 
 @pytest.mark.parametrize("columns", [80, 40])

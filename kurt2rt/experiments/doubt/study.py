@@ -111,9 +111,9 @@ def tell(plan: StudyPlan[DoubtDrives], command: str) -> Told:
     doubt = plan.about.task.learning.doubt
     tables = [score_table(each.rows, doubt.threshold) for each in groups if doubt and each.of is DoubtResponse.TELLS]
     collisions = collision_table(groups, plan.about.set_down_after_s)
-    counts = "; ".join(f"{sum(len(log.collisions) for log in each.rows)} if doubt {each.of.value}" for each in groups)
-    drives = len(groups[0].rows)
-    told = Told([*tables, collisions], f"Collisions in {drives} drives without a teacher: {counts}.", collisions)
+    counts = ", ".join(f"{each.of.value} {sum(len(log.collisions) for log in each.rows)}" for each in groups)
+    sentence = f"Collisions in {len(groups[0].rows)} drives without a teacher, by what doubt does: {counts}."
+    told = Told([*tables, collisions], sentence, short=collisions)
     return tell_with_report(plan.results.folder, f"KURT2: doubt in {plan.about.task.name}", told, command)
 
 

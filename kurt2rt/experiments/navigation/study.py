@@ -180,7 +180,7 @@ def tell(plan: StudyPlan[TaskSettings], command: str) -> Told:
     errands = [each for run in outcomes for each in run.errands]
     good = of_text(sum(run.good(navigation_settings(task).detour_at_most) for run in outcomes), len(errands))
     sentence = f"{good} goals were reached by a way that is short enough, and never demonstrated as a whole."
-    told = Told(tables, sentence, tables[0], files={"pictures": plan.results.folder}, data={"pictures": pictures})
+    told = Told(tables, sentence, short=tables[0], files={"pictures": plan.results.folder}, data={"pictures": pictures})
     first = SavedFigure(pictures[0], f"Robot {outcomes[0].seed}", "It is the first of the seeds, and was not chosen.")
     return tell_with_report(plan.results.folder, "KURT2: errands in a town", told, command, [first])
 

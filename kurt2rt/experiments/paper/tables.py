@@ -31,7 +31,7 @@ from kurt2rt.experiments.study.exam_tables import (
     success_text,
 )
 from kurt2rt.experiments.study.intervals import collisions_in_10_min, quartiles, right_rate
-from kurt2rt.experiments.study.report import FOOTER, Section, spans, write_report
+from kurt2rt.experiments.study.report import TO_SEE_LESSONS, Section, spans, tell_with_report
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.study.table import (
     ROBOTS,
@@ -71,8 +71,11 @@ _OF_RATES = (
 
 def reasons_not_to_judge(plan: StudyPlan[PaperExtent]) -> Iterator[str]:
     """Yield the reasons against judging; none for a whole study with enough new robots and worlds."""
-    if not plan.about.extent.is_whole:
-        yield "A part only: it says that everything works, and nothing about the paper."
+    extent = plan.about.extent
+    if not extent.is_whole:
+        limits = {"Lessons": extent.most_teaching_s, "Exams": extent.most_exam_s}
+        told = "".join(f" {what} last at most {most_s:g} s." for what, most_s in limits.items() if most_s)
+        yield f"A part only: it says that everything works, and nothing about the paper.{told}"
     yield from reasons_against_judging(plan.seeds)
     shipped = {job.task.name: job.settings.unseen for job in plan.of(TaughtJob) if job.reading == "shipped"}
     for name, unseen in shipped.items():
@@ -251,16 +254,15 @@ def _behaviour_table(groups: Sequence[Examined], title: str) -> Table:
 
 
 def _passed_text(groups: Sequence[Examined]) -> str:
-    drives = [drive for group in groups for robot in group.rows for drive in robot.drives]
-    return of_text(sum(each.passed for each in drives), sum(each.judged for each in drives))
+    return success_text([drive for group in groups for robot in group.rows for drive in robot.drives])
 
 
-def _short_table(study: PaperStudy, note: str) -> Table:
-    """Return a row for each task in each reading, for a terminal; `note`: how many targets were met."""
+def _short_table(study: PaperStudy, *, judged: bool) -> Table:
+    """Return a row for each task in each reading, for a terminal."""
 
     def met(group: Examined) -> str:
-        found = list(verdicts(group))
-        return of_text(sum(each.met for each in found), len(found)) if found else "nothing"
+        found = [each.met for each in verdicts(group) if each.judged]
+        return of_text(sum(found), len(found)) if found and judged else "not judged" if found else "nothing"
 
     return table_of(
         "What was asked, and what came",
@@ -274,7 +276,6 @@ def _short_table(study: PaperStudy, note: str) -> Table:
         ("exams passed", lambda each: _passed_text([each])),
         ("asked, met", met),
         words=2,
-        note=note,
     )
 
 
@@ -378,13 +379,11 @@ def tell(plan: StudyPlan[PaperExtent], factory: SimulationFactory, command: str)
     """
     study, folder = read_study(plan), plan.results.folder
     tables, reasons = list(all_tables(study)), list(reasons_not_to_judge(plan))
-    path = folder / "report.html"
-    extent, seeds = study.plan.about.extent, spans(study.plan.seeds)
-    told = (
+    about = (
         "A simulated robot is taught each task by a scripted teacher, over the commands that a person uses, and then "
-        f"examined without it, once per seed ({seeds}). A seed makes the robot with the spread of its sensors, its "
-        "noise and its start. Next to our numbers stand those of section VII.1 of the paper, and those that were asked "
-        "of this project. What is missed stands here as it came."
+        f"examined without it, once per seed ({spans(plan.seeds)}). A seed makes the robot with the spread of its "
+        "sensors, its noise and its start. Next to our numbers stand those of section VII.1 of the paper, and those "
+        "that were asked of this project. What is missed stands here as it came."
     )
     plain = (
         "The shipped settings first. In the plain reading of the paper all 72 values weigh 1, corrections only replace "
@@ -393,31 +392,19 @@ def tell(plan: StudyPlan[PaperExtent], factory: SimulationFactory, command: str)
     shared = (
         f"Shared among {ROBOTS} robots whose seeds follow each other: what a robot drives in follows from its own seed."
     )
-    limits = (
-        f"Lessons last at most {extent.most_teaching_s:g} s, " if extent.most_teaching_s else "",
-        f"exams at most {extent.most_exam_s:g} s; " if extent.most_exam_s else "",
-        "tasks, robots, worlds and radii are fewer.",
-    )
     unseen = [table for each in study.experiments if (table := unseen_table(each)).rows]
     experiments = [each.of for each in study.experiments]
-    picture, *pictures = draw_figures(study, factory, folder)
     passed = ", ".join(f"{_passed_text(study.of(each))} with the {each} settings" for each in study.readings)
-    sentence = f"Exams passed without a teacher: {passed}."
-    write_report(
-        path,
-        "KURT2: the paper's basic-level tasks, taught and examined",
-        (
-            Section("", (sentence,), pictures=[picture]),
-            Section("", (told,)),
-            Section("Tables", (SUCCESS_NOTE, *([plain] if len(study.readings) > 1 else ())), tables),
-            Section("Figures", pictures=pictures),
-            *([Section("Generated worlds", (shared,), unseen)] if unseen else ()),
-            Section("How this was made", tables=(_learning_table(experiments), _exams_table(experiments))),
-        ),
-        reasons=reasons,
-        extent="" if extent.is_whole else "".join(limits),
-        command=command,
-        footer=f"Seeds {seeds}. {FOOTER} One robot's lessons: `kurt2rt knowledge show` with a file of the "
-        "folder `knowledge` next to this report.",
+    told = Told(
+        tables,
+        f"Exams passed without a teacher: {passed}.",
+        (about, SUCCESS_NOTE, *([plain] if len(study.readings) > 1 else ())),
+        _short_table(study, judged=not reasons),
+        reasons,
     )
-    return Told(tables, sentence, _short_table(study, tables[0].note), reasons, {"report": path})
+    more = [
+        *([Section("Generated worlds", (shared,), unseen)] if unseen else ()),
+        Section("Settings", tables=(_learning_table(experiments), _exams_table(experiments))),
+    ]
+    title, pictures = "KURT2: the paper's basic-level tasks, taught and examined", draw_figures(study, factory, folder)
+    return tell_with_report(folder, title, told, command, list(pictures), more, TO_SEE_LESSONS)

@@ -36,7 +36,7 @@ from kurt2rt.experiments.study.exam_tables import (
     success_text,
 )
 from kurt2rt.experiments.study.intervals import TEN_MIN_S, Rate, quartiles, rate_of
-from kurt2rt.experiments.study.report import FOOTER, Section, spans, write_report
+from kurt2rt.experiments.study.report import TO_SEE_LESSONS, Section, spans, tell_with_report
 from kurt2rt.experiments.study.study_plan import Group, StudyPlan
 from kurt2rt.experiments.study.table import (
     Column,
@@ -343,36 +343,22 @@ def tell(plan: StudyPlan[PhasesTask], command: str) -> Told:
     `command`: typed words, without those that belong to the machine alone. Raises StudyError, OSError, and
     SettingsError if the task has no section on phases.
     """
-    study, folder, seeds = read_study(plan), plan.results.folder, spans(plan.seeds)
-    reasons = list(reasons_not_to_judge(plan))
-    tables, path = list(all_tables(study, reasons)), folder / "report.html"
+    study, reasons = read_study(plan), list(reasons_not_to_judge(plan))
+    tables = list(all_tables(study, reasons))
     taught, at_end = (
         success_text([exam for robot in study.stages[step].rows for exam in robot.exams])
         for step in (Step.PHASE_2, Step.PHASE_5)
     )
-    sentence = f"After answers and corrections {taught} exams are passed without a teacher, after all phases {at_end}."
-    picture, *pictures = draw_figures(study, folder)
-    told = (
+    sentence = f"Exams passed without a teacher: {taught} after answers and corrections; {at_end} after all phases."
+    about = (
         "A simulated robot is trained through all phases by a scripted teacher, over the commands that a person uses, "
-        f"once per seed ({seeds}): answers (1), corrections (2), rewards (3), a critic of its own is taught (4), and "
-        "it goes on alone with what that critic thinks (5). After each phase it is examined without its teacher. Next "
-        "to the path stand branches: the set of phase 2 with wrong actions, left as it is or repaired in several ways. "
-        "A seed makes the robot with the spread of its sensors, its noise and its start. What is missed stands here as "
-        "it came."
+        f"once per seed ({spans(plan.seeds)}): answers (1), corrections (2), rewards (3), a critic of its own is "
+        "taught (4), and it goes on alone with what that critic thinks (5). After each phase it is examined without "
+        "its teacher. Next to the path stand branches: the set of phase 2 with wrong actions, left as it is or "
+        "repaired in several ways. A seed makes the robot with the spread of its sensors, its noise and its start. "
+        "What is missed stands here as it came."
     )
-    write_report(
-        path,
-        f"KURT2: {plan.about.task.name.replace('_', ' ')}, phases 1 to 5",
-        (
-            Section("", (sentence,), pictures=[picture]),
-            Section("", (told,)),
-            Section("Tables", tables=tables),
-            Section("Figures", pictures=pictures),
-            Section("How this was made", tables=(_settings_table(plan.about.task),)),
-        ),
-        reasons=reasons,
-        command=command,
-        footer=f"Seeds {seeds}. {FOOTER} What a robot knew after a step: `kurt2rt knowledge show` with a "
-        "file of the folder `knowledge` next to this report.",
-    )
-    return Told(tables, sentence, tables[0], reasons, {"report": path})
+    title = f"KURT2: {plan.about.task.name.replace('_', ' ')}, phases 1 to 5"
+    told, folder = Told(tables, sentence, (about,), tables[0], reasons), plan.results.folder
+    settings = [Section("Settings", tables=(_settings_table(plan.about.task),))]
+    return tell_with_report(folder, title, told, command, list(draw_figures(study, folder)), settings, TO_SEE_LESSONS)

@@ -14,7 +14,7 @@ from kurt2rt.experiments.route.route_monitor import LAYERS
 from kurt2rt.experiments.route.study import RouteJob, RouteOutcome, Routes, RouteTasks
 from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of, save
 from kurt2rt.experiments.study.intervals import Rate, right_rate
-from kurt2rt.experiments.study.report import Section, spans, write_report
+from kurt2rt.experiments.study.report import TO_SEE_LESSONS, spans, tell_with_report
 from kurt2rt.experiments.study.study_plan import StudyPlan, read_groups
 from kurt2rt.experiments.study.table import (
     Column,
@@ -262,33 +262,19 @@ def tell(plan: StudyPlan[RouteTasks], command: str) -> Told:
     `command`: typed words, without those that belong to the machine alone.
     """
     routes = read_groups(plan.of(RouteJob), lambda job: job.decisions, RouteOutcome)
-    (task, basic), seeds, folder = plan.about, spans(plan.seeds), plan.results.folder
+    (task, basic), folder = plan.about, plan.results.folder
     tables, reasons = list(all_tables(routes, task, plan.seeds)), list(reasons_against_judging(plan.seeds))
-    path = folder / "report.html"
     drives = [robot.drive for each in routes for robot in each.rows]
     without = of_text(sum(each.passed for each in drives), len(drives), interval=True)
     sentence = f"{without} robots drove their route without a teacher and without an error."
-    picture, *pictures = draw_figures(routes, plan.jobs[0].factory, folder)
-    told = (
+    about = (
         f"A simulated robot is taught the streets ({basic.teaching.duration_s:g} s), and then a fixed route through "
         f"them ({task.teaching.duration_s:g} s): a closed loop that its seed draws, at each of whose junctions one way "
         "is right. Its mid level is asked for nothing but which taught behaviour is next. Then it drives the route "
-        f"without its teacher. Once per seed ({seeds}); a seed makes the robot with the spread of its sensors, its "
-        "noise and its route."
+        f"without its teacher. Once per seed ({spans(plan.seeds)}); a seed makes the robot with the spread of its "
+        "sensors, its noise and its route."
     )
-    write_report(
-        path,
-        "KURT2: routes that its mid level was taught",
-        (
-            Section("", (sentence,), pictures=[picture]),
-            Section("", (told,)),
-            Section("Tables", tables=tables),
-            Section("Drives", pictures=pictures),
-            Section("How this was made"),
-        ),
-        reasons=reasons,
-        command=command,
-        footer=f"Seeds {seeds}. {{versions}}. Source: {{source}}. One robot's lessons: `kurt2rt knowledge show` with a "
-        "file of the folder `knowledge` next to this report.",
-    )
-    return Told(tables, sentence, tables[0], reasons, {"report": path})
+    told = Told(tables, sentence, (about,), tables[0], reasons)
+    pictures = list(draw_figures(routes, plan.jobs[0].factory, folder))
+    title = "KURT2: routes that its mid level was taught"
+    return tell_with_report(folder, title, told, command, pictures, footer=TO_SEE_LESSONS)

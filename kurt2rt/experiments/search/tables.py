@@ -17,7 +17,7 @@ from kurt2rt.experiments.search.trials import CheckedSettings, CheckResult, Sear
 from kurt2rt.experiments.study.figures import SavedFigure, save
 from kurt2rt.experiments.study.intervals import Rate
 from kurt2rt.experiments.study.jobs import ExaminedOutcome
-from kurt2rt.experiments.study.report import Section, spans, write_report
+from kurt2rt.experiments.study.report import Section, spans, tell_with_report
 from kurt2rt.experiments.study.table import Table, Told, of_text, rate_text, table_of
 from kurt2rt.platform.durable_files import write_durably
 
@@ -184,8 +184,8 @@ def tell(plan: SearchPlan, found: SearchTrials, check: CheckResult, command: str
     """
     tables = [_trials_table(plan, found, check.record.trials), _check_table(plan, check)]
     figure = _draw_trials(plan, found.all[: check.record.trials], plan.folder / "trials.png")
-    files = {"found": plan.folder / "found.yaml", "report": plan.folder / "report.html"}
-    write_found(plan, check, command, files["found"])
+    found_file = plan.folder / "found.yaml"
+    write_found(plan, check, command, found_file)
     search = plan.search
     space = table_of(
         "Space",
@@ -197,25 +197,21 @@ def tell(plan: SearchPlan, found: SearchTrials, check: CheckResult, command: str
         ("shipped", lambda each: f"{plan.space.shipped[each.key]:g}"),
         words=2,
     )
-    told = (
+    about = (
         f"Each trial teaches the robots of seeds {spans(search.search.seeds.seeds)} with settings of its own, by the "
         f"scripted teacher {search.teacher}, and examines them without it. A trial that cannot beat the median of the "
         "trials before it ends early. The best trials and the shipped settings are then compared once on the robots of "
-        f"seeds {spans(plan.check.seeds.seeds)}, which chose nothing."
-    )
-    write_report(
-        files["report"],
-        f"KURT2: search for settings of {search.task}",
-        (
-            Section("", (verdict_text(plan, check),), pictures=[figure]),
-            Section("Tables", (told,), (*tables, space)),
-            Section("How this was made"),
-        ),
-        command=command,
-        footer=f"Checked on {check.record.date}. {{versions}}. Source: {{source}}. The same command with the same "
-        "versions has the same trials.",
+        f"seeds {spans(plan.check.seeds.seeds)}, which chose nothing; checked on {check.record.date}."
     )
     better = None if check.found is None else check.found.label
-    short = replace(tables[1], note="")
-    data = {"better": better, "verdict": verdict_text(plan, check)}
-    return Told(tables, verdict_text(plan, check), short, files=files, data=data)
+    verdict = verdict_text(plan, check)
+    told = Told(
+        tables,
+        verdict,
+        (about,),
+        replace(tables[1], note=""),
+        files={"found": found_file},
+        data={"better": better, "verdict": verdict},
+    )
+    title, more = f"KURT2: search for settings of {search.task}", [Section("Space", tables=(space,))]
+    return tell_with_report(plan.folder, title, told, command, [figure], more)

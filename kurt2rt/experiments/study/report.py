@@ -16,9 +16,9 @@ from kurt2rt.experiments.study.table import Table, Told
 from kurt2rt.platform.durable_files import write_durably
 
 _MADE_WITH = ("kurt2rt", "matplotlib", "jinja2")
-FOOTER = (
-    "{versions}. Source: {source}. The same command with the same versions gives the same numbers on the same kind of "
-    "machine."
+_SAME = "The same command with the same versions gives the same numbers on the same kind of machine."
+TO_SEE_LESSONS = (
+    "What a robot was taught: `kurt2rt knowledge show` with a file of the folder `knowledge` next to this report."
 )
 
 
@@ -35,21 +35,20 @@ class Section(NamedTuple):
     pictures: Sequence[SavedFigure] = ()
 
 
-def write_report(
-    path: Path,
+def tell_with_report(
+    folder: Path,
     title: str,
-    sections: Sequence[Section],
-    *,
+    told: Told,
     command: str,
-    footer: str,
-    reasons: Sequence[str] = (),
-    extent: str = "",
-) -> None:
-    """Write the report of a study as an HTML page to `path`. Raises OSError.
+    pictures: Sequence[SavedFigure] = (),
+    more: Sequence[Section] = (),
+    footer: str = "",
+) -> Told:
+    """Write the report of a study as an HTML page, report.html, into `folder`; return `told` with it.
 
-    The first section comes before the reasons and needs no heading: its first text is the result in one sentence. The
-    last one ends with `command`, without words that belong to the machine alone. `footer`: `{versions}` and `{source}`
-    stand for these. `reasons`: those against judging. `extent`: what is left out.
+    Its sentence and the first picture come before all else, then its reasons against judging, what was done, all its
+    tables, and the other pictures. `more`: sections behind these. `command`: typed words, without those that belong to
+    the machine alone. `footer`: what follows the versions. Raises OSError.
     """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("kurt2rt.experiments.study", ""),
@@ -59,30 +58,23 @@ def write_report(
         lstrip_blocks=True,
     )
     environment.filters |= {"typed": _typed, "uri": _as_uri}
+    sections = (
+        Section("", (told.sentence,), pictures=pictures[:1]),
+        Section("", told.about),
+        Section("Tables", tables=told.tables),
+        *([Section("Figures", pictures=pictures[1:])] if pictures[1:] else ()),
+        *more,
+    )
     made_with = ", ".join([versions_with_python(), *(f"{name} {version(name)}" for name in _MADE_WITH)])
     html = environment.get_template("report.html.j2").render(
         title=title,
         sections=sections,
-        reasons=reasons,
-        extent=extent,
+        reasons=told.not_judged,
         command=command,
-        footer=footer.format(versions=made_with, source=source_hash()),
+        footer=f"{made_with}. Source: {source_hash()}. {_SAME} {footer}",
     )
-    write_durably(path, html)
-
-
-def tell_with_report(folder: Path, title: str, told: Told, command: str, pictures: Sequence[SavedFigure] = ()) -> Told:
-    """Write report.html into `folder`, with the sentence, the pictures and all tables of `told`; return it with it.
-
-    `command`: typed words, without those that belong to the machine alone. Raises OSError.
-    """
     path = folder / "report.html"
-    sections = (
-        Section("", (told.sentence,), pictures=pictures),
-        Section("Tables", tables=told.tables),
-        Section("How this was made"),
-    )
-    write_report(path, title, sections, command=command, footer=FOOTER, reasons=told.not_judged)
+    write_durably(path, html)
     return replace(told, files={**told.files, "report": path})
 
 

@@ -38,6 +38,8 @@ class Told:
     tables: Sequence[Table]
     sentence: str = ""
     """Result in one sentence, which opens the report, too; empty: a terminal shows all tables."""
+    about: Sequence[str] = ()
+    """What was done, for the report alone; between backticks stands what is typed."""
     short: Table | None = None
     """Table of what was asked and what came, alone on a terminal if there is a sentence."""
     not_judged: Sequence[str] = ()
