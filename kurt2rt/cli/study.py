@@ -65,12 +65,6 @@ def _seeds(default: str) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Transfer(TaskOptions):
-    there: Annotated[
-        str | None,
-        _no_default(
-            "Scripted teacher of the new world. Default: the teacher of home.", "--teacher-there", metavar="NAME|PATH"
-        ),
-    ] = None
     seeds: Annotated[str, typer.Option(help=_seeds("1100-1119"))] = "1100-1119"
     world: Annotated[
         list[str] | None,
@@ -121,7 +115,7 @@ def transfer(options: _Transfer) -> None:
     task, robot = options.load()
     places = options.world or ["streets-SEED" if task.name == "streets" else "rooms-SEED"]
     after = tuple(sorted(set(options.checkpoint or AFTER)))
-    about = Transfer(task, tuple(places), after, options.seconds, options.there)
+    about = Transfer(task, tuple(places), after, options.seconds)
     parts, engine = job_parts(robot, options.out), options.requested_engine()
     plan = make_plan(about, parse_seeds(options.seeds), parts, engine=engine)
     command = typed_command("study transfer", options, {"task": options.task, "seeds": options.seeds})

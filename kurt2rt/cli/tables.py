@@ -12,7 +12,7 @@ from kurt2rt.cli.json_output import print_json
 from kurt2rt.platform.text_table import print_whole
 
 if TYPE_CHECKING:
-    from kurt2rt.experiments.study.table import Told
+    from kurt2rt.experiments.study.table import Table, Told
 
 
 _UNLIMITED = 100_000
@@ -46,8 +46,8 @@ def print_told(told: "Told", *, as_json: bool) -> None:
     console = console_of()
     width = max(map(len, told.files), default=0)
     files = [f"{what:<{width}}  {path}" for what, path in told.files.items()]
-    if told.sentence and console.is_terminal:
-        for parts in _ever_shorter(told, files):
+    if told.short is not None and console.is_terminal:
+        for parts in _ever_shorter(told, told.short, files):
             with console.capture() as printed:
                 print_whole(console, *parts)
             if printed.get().count("\n") <= _SCREEN:
@@ -59,17 +59,15 @@ def print_told(told: "Told", *, as_json: bool) -> None:
     print_whole(console, *map(as_rich, told.tables), *reasons, *to_copy, *files)
 
 
-def _ever_shorter(told: "Told", files: list[str]) -> Iterator[list[RenderableType]]:
+def _ever_shorter(told: "Told", short: "Table", files: list[str]) -> Iterator[list[RenderableType]]:
     """Yield the results for a terminal, with all rows of the short table, then with fewer: missed targets stay."""
     from kurt2rt.experiments.study.table import as_rich
 
-    rows = () if told.short is None else told.short.rows
-    missed_first = sorted(rows, key=lambda row: "MISSED" not in row)
-    note = f"Not judged: {told.not_judged[0]}" if told.not_judged else "" if told.short is None else told.short.note
+    missed_first = sorted(short.rows, key=lambda row: "MISSED" not in row)
+    note = f"Not judged: {told.not_judged[0]}" if told.not_judged else short.note
     to_copy = [Text(line, no_wrap=True) for line in told.lines[:1]]
-    for count in range(len(rows), -1, -1):
-        kept = rows if count == len(rows) else missed_first[:count]
-        left = f"More rows in the report: {len(rows) - count}." if count < len(rows) else ""
-        text = " ".join(filter(None, (left, note)))
-        table = [] if told.short is None else [as_rich(replace(told.short, rows=tuple(kept), note=text))]
-        yield [told.sentence, *table, *to_copy, *files]
+    yield [told.sentence, as_rich(replace(short, note=note)), *to_copy, *files]
+    for left_out in range(1, len(short.rows) + 1):
+        kept = tuple(missed_first[:-left_out])
+        text = f"More rows in the report: {left_out}. {note}".rstrip()
+        yield [told.sentence, as_rich(replace(short, rows=kept, note=text)), *to_copy, *files]

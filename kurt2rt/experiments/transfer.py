@@ -5,6 +5,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from statistics import median
 from typing import ClassVar, NamedTuple
 
 from matplotlib.figure import Figure
@@ -12,8 +13,7 @@ from matplotlib.figure import Figure
 from config.settings import SettingsError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import Phase
-from kurt2rt.core.task_settings import TaskSettings, taught_by
-from kurt2rt.core.teacher_settings import load_teacher
+from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
@@ -60,12 +60,10 @@ class Transfer(NamedTuple):
     """Numbers of presses after which a robot is examined in the new world, ascending."""
     seconds: float | None = None
     """Longest time of teaching there in s; None: that of the lesson at home."""
-    teacher: str | None = None
-    """Name of another teacher there; None: the teacher of home."""
 
     def task_in(self, world: str) -> TaskSettings:
-        """Return the task to teach and examine in a new world. Raises SettingsError if its teacher cannot be loaded."""
-        task = self.task if self.teacher is None else taught_by(self.task, load_teacher(self.teacher))
+        """Return the task to teach and examine in a new world."""
+        task = self.task
         teaching = task.teaching.model_copy(update={"world": world})
         exam = task.exam.model_copy(update={"worlds": (world,)})
         return task.model_copy(update={"teaching": teaching, "exam": exam})
@@ -322,7 +320,7 @@ def verdicts(group: There, study: TransferStudy) -> Iterator[Verdict]:
     right, needed = _right_by(group, presses), needed_of(RIGHT_SHARE, len(judged))
     asked, came = f"at least {of_text(needed, len(judged))}", of_text(right, len(judged))
     yield Verdict(f"right there by {presses} presses", asked, came, right >= needed)
-    until = _median([each.presses_until_right for each in judged])
+    until = median(each.presses_until_right for each in judged)
     shown = f"{until:g}" if math.isfinite(until) else f"more than {presses}"
     yield Verdict("presses until right, median", f"at most {MOST_PRESSES}", shown, until <= MOST_PRESSES)
     after = sum(each.home_when_right.passed for each in group.rows)
@@ -360,7 +358,7 @@ def _teaching_table(study: TransferStudy) -> Table:
     def until(name: str, form: str, never: str) -> Callable[[There], str]:
         def cell(group: There) -> str:
             values = [getattr(robot, name) for robot in _judged_of(group)]
-            return "" if not values else f"{_median(values):{form}}" if math.isfinite(_median(values)) else never
+            return "" if not values else f"{median(values):{form}}" if math.isfinite(median(values)) else never
 
         return cell
 
@@ -418,13 +416,6 @@ def drive_text(drive: DriveRow) -> str:
     if drive.stuck:
         return f"stuck at {drive.duration_s:.0f} s"
     return f"{drive.right_share:.0%} of junctions right" if 0.0 < drive.right_share < 1.0 else "slow"
-
-
-def _median(values: list[float]) -> float:
-    """Return the median of values that may be infinite; of two middle values their mean."""
-    ordered = sorted(values)
-    low, high = ordered[(len(ordered) - 1) // 2], ordered[len(ordered) // 2]
-    return low if low == high else (low + high) / 2
 
 
 def draw_curves(study: TransferStudy, path: Path) -> None:

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from behaviors.metrics.task_metric import JUNCTIONS, RIGHT
-from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict, label_of
 from kurt2rt.experiments.paper.figures import draw_figures
 from kurt2rt.experiments.paper.settings import AskedSettings
@@ -46,6 +45,7 @@ from kurt2rt.experiments.study.table import (
     of_text,
     quarters,
     reasons_against_judging,
+    settings_table,
     table_of,
     targets_table,
     to_text,
@@ -62,7 +62,6 @@ SUCCESS_NOTE = (
 )
 _SUCCESS_WORDS = {ExamVerdict.PASSED: "yes", ExamVerdict.FAILED: "NO"}
 _GROWTH_AT_S = (60, 120, 200, 345, 600)
-_PLACES = {"starts": "a start pose", "in_sight": "any place in sight"}
 _OF_RATES = (
     "Its interval is the wider at each end of Poisson's exact one and a bootstrap over robots; in generated worlds "
     "over drives, of which one robot has several."
@@ -317,58 +316,15 @@ def _sentence(title: str) -> str:
     return title[0].upper() + title[1:]
 
 
-def _of_task(heading: str, text: Callable[[TaskSettings], object]) -> Column:
-    return heading, lambda each: text(each.task)
-
-
-def _learning_table(experiments: Iterable[Experiment]) -> Table:
-    def repositions(task: TaskSettings) -> str:
-        return f"every {task.teaching.reposition_every_s:g} s" if task.teaching.reposition_every_s else "never"
-
-    def weights(task: TaskSettings) -> str:
-        return "; ".join(f"{each.weight:g}: {', '.join(each.features)}" for each in task.learning.weights) or "none"
-
-    return table_of(
-        "Settings of learning and of the scripted teacher",
-        experiments,
-        ("task", lambda each: each.label),
-        ("reading", lambda each: each.reading),
-        _of_task("R", lambda task: f"{task.learning.radius:g}"),
-        _of_task("weight of the averages", lambda task: f"{task.learning.history_weight:g}"),
-        _of_task("weights that are not 1", weights),
-        _of_task("insert beyond, share of R", lambda task: f"{task.learning.insert_radius_fraction:g}"),
-        _of_task("an action lasts at least, s", lambda task: f"{task.learning.minimum_action_s:g}"),
-        _of_task("taught in", lambda task: task.teaching.world),
-        _of_task("phases 1 + 2, s", lambda task: f"{task.teaching.supervised_s:g} + {task.teaching.corrections_s:g}"),
-        _of_task("teacher", lambda task: task.teaching.profile.name),
-        _of_task("reaction, s", lambda task: f"{task.teaching.teacher.reaction_s:g}"),
-        _of_task("patience, s", lambda task: f"{task.teaching.teacher.patience_s:g}"),
-        _of_task("wrong answers", lambda task: f"{task.teaching.teacher.error_rate:.0%}"),
-        _of_task(
-            "rescues", lambda task: f"after {task.teaching.rescue_after_s:g} s within {task.exam.stuck_within_m:g} m"
-        ),
-        _of_task("re-positions", repositions),
-        _of_task("sets it down at", lambda task: _PLACES[task.teaching.reposition_to]),
-        words=2,
-    )
-
-
-def _exams_table(experiments: Iterable[Experiment]) -> Table:
-    def right(task: TaskSettings) -> str:
-        return f"{task.exam.success.right_at_least:.0%}" if task.exam.success.right_at_least else ""
-
-    return table_of(
-        "Settings of the exams",
-        {each.task.name: each for each in experiments}.values(),
-        ("task", lambda each: each.label),
-        _of_task("starts at", lambda task: _PLACES[task.exam.start]),
-        _of_task("lasts, s", lambda task: f"{task.exam.duration_s:g}"),
-        _of_task("stuck after, s", lambda task: f"{task.exam.stuck_after_s:g}"),
-        _of_task("within, m", lambda task: f"{task.exam.stuck_within_m:g}"),
-        _of_task("collisions at most", lambda task: task.exam.success.collisions_at_most),
-        _of_task("of the teacher's progress at least", lambda task: f"{task.exam.success.progress_share:.0%}"),
-        _of_task("junctions right at least", right),
-        note=SUCCESS_NOTE,
+def _settings_table(experiments: Iterable[Experiment]) -> Table:
+    """Return the settings of each experiment; of the scripted teacher's person its name stands for all."""
+    parts, left_out = {"learning", "teaching", "exam"}, {"teaching": {"profile": {"person"}}}
+    return settings_table(
+        "Settings of learning, of the scripted teacher and of the exams",
+        {
+            f"{each.label}, {each.reading}": each.task.model_dump(mode="json", include=parts, exclude=left_out)
+            for each in experiments
+        },
     )
 
 
@@ -393,7 +349,6 @@ def tell(plan: StudyPlan[PaperExtent], factory: SimulationFactory, command: str)
         f"Shared among {ROBOTS} robots whose seeds follow each other: what a robot drives in follows from its own seed."
     )
     unseen = [table for each in study.experiments if (table := unseen_table(each)).rows]
-    experiments = [each.of for each in study.experiments]
     passed = ", ".join(f"{_passed_text(study.of(each))} with the {each} settings" for each in study.readings)
     told = Told(
         tables,
@@ -404,7 +359,7 @@ def tell(plan: StudyPlan[PaperExtent], factory: SimulationFactory, command: str)
     )
     more = [
         *([Section("Generated worlds", (shared,), unseen)] if unseen else ()),
-        Section("Settings", tables=(_learning_table(experiments), _exams_table(experiments))),
+        Section("Settings", tables=(_settings_table(each.of for each in study.experiments),)),
     ]
     title, pictures = "KURT2: the paper's basic-level tasks, taught and examined", draw_figures(study, factory, folder)
     return tell_with_report(folder, title, told, command, list(pictures), more, TO_SEE_LESSONS)

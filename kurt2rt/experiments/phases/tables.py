@@ -46,6 +46,7 @@ from kurt2rt.experiments.study.table import (
     middle,
     of_text,
     rate_columns,
+    settings_table,
     share_text,
     table_of,
     targets_table,
@@ -320,21 +321,7 @@ def _settings_table(task: TaskSettings) -> Table:
         "judge": task.judge.model_dump(mode="json") if task.judge else {},
         "critic": load_critic(task.critic).model_dump(mode="json"),
     }
-    rows = tuple(_told(of, ""))
-    return Table("Settings of phases 3 to 5", ("setting", "value"), rows, words=2)
-
-
-def _told(value: Any, name: str) -> Iterator[tuple[str, str]]:
-    if isinstance(value, dict):
-        for key, each in value.items():
-            yield from _told(each, f"{name}.{key}" if name else key)
-    elif isinstance(value, list) and any(isinstance(each, dict) for each in value):
-        for number, each in enumerate(value):
-            yield from _told(each, f"{name}.{number}")
-    elif isinstance(value, list):
-        yield name, ", ".join(map(str, value))
-    else:
-        yield name, f"{value:g}" if isinstance(value, float) else str(value)
+    return settings_table("Settings of phases 3 to 5", {"value": of})
 
 
 def tell(plan: StudyPlan[PhasesTask], command: str) -> Told:

@@ -37,11 +37,11 @@ class Told:
 
     tables: Sequence[Table]
     sentence: str = ""
-    """Result in one sentence, which opens the report, too; empty: a terminal shows all tables."""
+    """Result in one sentence, which opens the report, too."""
     about: Sequence[str] = ()
     """What was done, for the report alone; between backticks stands what is typed."""
     short: Table | None = None
-    """Table of what was asked and what came, alone on a terminal if there is a sentence."""
+    """Table of what was asked and what came, with the sentence alone on a terminal; None: it shows all tables."""
     not_judged: Sequence[str] = ()
     """Reasons against judging by its targets."""
     files: Mapping[str, Path] = field(default_factory=dict)
@@ -58,6 +58,27 @@ def table_of(
     """Return a table with a row for each of `rows`; the fields of `Table` have their other parts."""
     cells = tuple(tuple(str(of(row)) for _, of in columns) for row in rows)
     return Table(title, tuple(heading for heading, _ in columns), cells, words, note)
+
+
+def settings_table(title: str, settings: Mapping[str, Mapping[str, Any]]) -> Table:
+    """Return a row for each setting, named as --set takes it, and a column for each of `settings` under its key."""
+    columns = {heading: dict(_leaves(each, "")) for heading, each in settings.items()}
+    names = dict.fromkeys(name for each in columns.values() for name in each)
+    rows = tuple((name, *(each.get(name, "") for each in columns.values())) for name in names)
+    return Table(title, ("setting", *columns), rows, words=1 + len(columns))
+
+
+def _leaves(value: Any, name: str) -> Iterator[tuple[str, str]]:
+    if isinstance(value, Mapping):
+        for key, each in value.items():
+            yield from _leaves(each, f"{name}.{key}" if name else key)
+    elif isinstance(value, list) and any(isinstance(each, Mapping) for each in value):
+        for number, each in enumerate(value):
+            yield from _leaves(each, f"{name}.{number}")
+    elif isinstance(value, list):
+        yield name, ", ".join(map(str, value))
+    else:
+        yield name, f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def as_rich(table: Table) -> RenderableType:
