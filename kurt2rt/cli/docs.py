@@ -9,7 +9,7 @@ from rich.markdown import Markdown
 
 from config.errors import UserError, guess
 from kurt2rt.cli.tables import console_of
-from kurt2rt.platform.text_table import TextTable, print_whole
+from kurt2rt.platform.text_table import Column, TextTable, print_whole
 
 
 def docs(
@@ -31,9 +31,7 @@ def docs(
     pages = {path.stem: path for path in sorted(folder.glob("*.md"))}
     console = console_of()
     if page is None:
-        table = TextTable()
-        table.add_column("page", whole=True)
-        table.add_column("title")
+        table = TextTable(Column("page", whole=True), "title")
         for name, path in pages.items():
             table.add_row(name, path.read_text(encoding="utf-8").splitlines()[0].removeprefix("# "))
         print_whole(console, table, f"folder  {folder}")

@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
@@ -35,7 +36,7 @@ def _names_in(kind: str) -> Callable[[str], list[str]]:
 
         names = sorted(path.stem for path in (CONFIG_DIR / kind).glob("*.yaml"))
         names += (each.name for each in installed_plugins(kind))
-        names += (each.name for each in plugin_tasks() if kind == "tasks")
+        names += (each.name for each in (plugin_tasks() if kind == "tasks" else ()))
         return [name for name in names if name.startswith(incomplete)]
 
     return complete
@@ -71,15 +72,8 @@ def _named(option: str, kind: str, told: str) -> Any:
 
 
 DEFAULT_TEACHER = "ordinary"
-Teacher = Annotated[
-    str,
-    typer.Option(
-        "--teacher",
-        metavar=_NAME_OR_PATH,
-        help="Scripted teacher: a name in config/teachers, or the path of a YAML file.",
-        autocompletion=_names_in("teachers"),
-    ),
-]
+_TEACHER = f"Scripted teacher: a name in config/teachers, or the path of a YAML file. Default: {DEFAULT_TEACHER}."
+Teacher = Annotated[str, _named("--teacher", "teachers", _TEACHER)]
 TASK_OF_THE_FILE = "Default: the task that the knowledge file was taught for."
 TaskOfTheFile = Annotated[str | None, task_option(TASK_OF_THE_FILE)]
 """Goes to kurt2rt.knowledge.files.task_of_file."""
@@ -93,12 +87,11 @@ PaperDefaults = Annotated[
 ]
 RobotName = Annotated[
     str | None,
-    typer.Option(
+    _named(
         "--robot-settings",
-        metavar=_NAME_OR_PATH,
-        help="Robot: a name in config/robots or of a plug-in, or the path of a YAML file. Default: the robot of the "
-        "task, which is kurt2 unless the task is of another one, such as school/fleeing.",
-        autocompletion=_names_in("robots"),
+        "robots",
+        "Robot: a name in config/robots or of a plug-in, or the path of a YAML file. Default: the robot of the task, "
+        "which is kurt2 unless the task is of another one, such as school/fleeing.",
     ),
 ]
 SettingsName = Annotated[
@@ -180,17 +173,11 @@ def results_option(default: str) -> Any:
 
 def seconds_of(text: str) -> float:
     """Return the seconds of `90`, `12.34`, `1:30` or `1:02:03`. Raises typer.BadParameter for another form."""
-    *before, last = text.split(":")
-    try:
-        seconds = float(last)
-    except ValueError:
-        seconds = math.nan
-    is_time = 0.0 <= seconds < (60.0 if before else math.inf)
-    if not is_time or len(before) > 2 or not all(each.isdecimal() for each in before):
+    found = re.fullmatch(r"(?:(?:(\d+):)?(\d+):)?(\d+\.?\d*|\.\d+)", text)
+    hours, minutes, seconds = (float(each or 0) for each in found.groups()) if found else (0.0, 0.0, math.inf)
+    if seconds >= (60.0 if ":" in text else math.inf):
         raise typer.BadParameter(f"give seconds such as 12.34, or minutes such as 1:30 (got {text!r})")
-    for power, each in enumerate(reversed(before), start=1):
-        seconds += int(each) * 60.0**power
-    return seconds
+    return 3600.0 * hours + 60.0 * minutes + seconds
 
 
 def changes_of(words: list[str] | None) -> dict[str, str]:

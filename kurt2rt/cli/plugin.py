@@ -9,7 +9,7 @@ from kurt2rt.checks.plugins.kinds import KINDS, KindName, TextKind, list_parts, 
 from kurt2rt.checks.plugins.skeleton import SkeletonKind, write_skeleton
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.tables import console_of
-from kurt2rt.platform.text_table import TextTable, print_whole
+from kurt2rt.platform.text_table import Column, TextTable, print_whole
 
 plugin = typer.Typer(
     help="List, show and begin plug-ins: parts of other authors.",
@@ -33,9 +33,7 @@ def list_(
     if as_json:
         print_json({"plugins": listed})
         return
-    table = TextTable()
-    for heading in ("kind", "name", "from", "note"):
-        table.add_column(heading, whole=heading == "name")
+    table = TextTable("kind", Column("name", whole=True), "from", "note")
     for each in listed:
         table.add_row(*each)
     print_whole(console_of(), table)

@@ -75,9 +75,7 @@ class _Options:
             "with --auto the others follow in turn. Default: the task's first.",
         ),
     ] = None
-    page: Annotated[bool, typer.Option("--page", help="Start the teacher's page as well and print its address.")] = (
-        False
-    )
+    page: Annotated[bool, typer.Option("--page", help="Start the teacher's page, too, and print its address.")] = False
     phone: Annotated[
         bool,
         typer.Option(
@@ -86,9 +84,7 @@ class _Options:
             "is open to the network and the code to scan stays on screen.",
         ),
     ] = False
-    no_open: Annotated[bool, typer.Option("--no-open", help="Do not open the page in the browser of this desktop.")] = (
-        False
-    )
+    no_open: Annotated[bool, typer.Option("--no-open", help="Do not open the page in this desktop's browser.")] = False
     auto: Annotated[
         bool,
         typer.Option(

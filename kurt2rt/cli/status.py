@@ -18,7 +18,7 @@ from kurt2rt.channel.protocol.health_text import URGENT, WARNS, headline, rows_o
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import SettingsName, task_option
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.platform.text_table import TextTable, print_whole
+from kurt2rt.platform.text_table import Column, TextTable, print_whole
 from kurt2rt.service.health.status_socket import read_reports, status_socket_path
 from kurt2rt.service.settings import load_service
 
@@ -89,9 +89,7 @@ def _show(reports: Iterator[HealthReport], *, watch: bool, json: bool) -> Health
 
 def as_rich(report: HealthReport) -> Group:
     """Return the report as a table for the terminal, with its troubles below."""
-    table = TextTable()
-    table.add_column("", whole=True)
-    table.add_column("")
+    table = TextTable(Column("", whole=True), "")
     for row in rows_of(report):
         style = _STYLES.get(row.level, "")
         table.add_row(Text(row.name, style=style or "bold"), Text(row.text, style=style))

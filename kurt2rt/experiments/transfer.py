@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 from typing import ClassVar, NamedTuple
@@ -25,6 +25,7 @@ from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.report import tell_with_report
 from kurt2rt.experiments.study.study_plan import EngineRequest, Group, StudyPlan, read_groups
 from kurt2rt.experiments.study.table import (
+    Column,
     Table,
     Told,
     Verdict,
@@ -328,28 +329,30 @@ def verdicts(group: There, study: TransferStudy) -> Iterator[Verdict]:
 
 
 def _curve_table(study: TransferStudy) -> Table:
-    def counted(count: Callable[[There, int], int], presses: int) -> Callable[[There], str]:
-        return lambda each: of_text(count(each, presses), len(_judged_of(each)), interval=True)
+    policy = share("", "policy.passed")[1]
+    rows = [
+        row
+        for each in study.there
+        for row in ((each, "taught on", policy(each), _right_after), (each, "until right", "", _right_by))
+    ]
 
-    def lines(how: str, policy: Callable[[There], object], count: Callable[[There, int], int]) -> Table:
-        return table_of(
-            "Robots that are right in the new world, by presses there",
-            study.there,
-            ("new world", lambda each: each.of),
-            ("taught how", lambda _: how),
-            ("policy", policy),
-            *((f"after {presses}", counted(count, presses)) for presses in study.plan.about.after),
-            words=2,
-            note=f"Exams of {study.plan.about.task.exam.duration_s:.0f} s without a teacher, with 95 % intervals. "
-            "Until right: as if teaching ended with the first exam that was passed; the best of several flatters. "
-            "A robot that needed fewer presses has all that it was taught. Policy: own drives of the teacher's policy "
-            "without collision or standstill, with enough junctions right. A robot whose policy fails there is not "
-            "judged and not counted.",
-        )
+    def after(presses: int) -> Column:
+        return f"after {presses}", lambda row: of_text(row[3](row[0], presses), len(_judged_of(row[0])), interval=True)
 
-    on = lines("taught on", share("", "policy.passed")[1], _right_after)
-    until = lines("until right", lambda _: "", _right_by)
-    return replace(on, rows=tuple(row for both in zip(on.rows, until.rows, strict=True) for row in both))
+    return table_of(
+        "Robots that are right in the new world, by presses there",
+        rows,
+        ("new world", lambda row: row[0].of),
+        ("taught how", lambda row: row[1]),
+        ("policy", lambda row: row[2]),
+        *map(after, study.plan.about.after),
+        words=2,
+        note=f"Exams of {study.plan.about.task.exam.duration_s:.0f} s without a teacher, with 95 % intervals. "
+        "Until right: as if teaching ended with the first exam that was passed; the best of several flatters. "
+        "A robot that needed fewer presses has all that it was taught. Policy: own drives of the teacher's policy "
+        "without collision or standstill, with enough junctions right. A robot whose policy fails there is not "
+        "judged and not counted.",
+    )
 
 
 def _teaching_table(study: TransferStudy) -> Table:

@@ -37,10 +37,10 @@ class TextTable:
     is neither a line of headings nor an empty line.
     """
 
-    def __init__(self, *words: str, title: str = "") -> None:
-        """`words`: headings of columns of words, in their order; `add_column` adds others."""
+    def __init__(self, *columns: str | Column, title: str = "") -> None:
+        """`columns`: in their order, those of words by their headings alone; `add_column` adds others."""
         self.title = title
-        self._columns = [Column(heading) for heading in words]
+        self._columns = [Column(each) if isinstance(each, str) else each for each in columns]
         self._rows: list[tuple[Text, ...]] = []
 
     @property

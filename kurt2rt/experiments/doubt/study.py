@@ -111,10 +111,14 @@ def tell(plan: StudyPlan[DoubtDrives], command: str) -> Told:
     doubt = plan.about.task.learning.doubt
     tables = [score_table(each.rows, doubt.threshold) for each in groups if doubt and each.of is DoubtResponse.TELLS]
     collisions = collision_table(groups, plan.about.set_down_after_s)
-    counts = ", ".join(f"{each.of.value} {sum(len(log.collisions) for log in each.rows)}" for each in groups)
+    counts = ", ".join(f"{each.of.value} {_collisions(each)}" for each in groups)
     sentence = f"Collisions in {len(groups[0].rows)} drives without a teacher, by what doubt does: {counts}."
     told = Told([*tables, collisions], sentence, short=collisions)
     return tell_with_report(plan.results.folder, f"KURT2: doubt in {plan.about.task.name}", told, command)
+
+
+def _collisions(each: Group[DoubtResponse, DriveLog]) -> int:
+    return sum(len(log.collisions) for log in each.rows)
 
 
 def score_table(logs: Sequence[DriveLog], threshold: float) -> Table:
@@ -155,17 +159,14 @@ def collision_table(groups: Sequence[Group[DoubtResponse, DriveLog]], set_down_a
         hundreds = [len(log.doubt) / TICKS_PER_MINUTE / 100 for log in each.rows]
         return rate_text(rate_of([len(log.collisions) for log in each.rows], hundreds), ".1f")
 
-    def collisions(each: Group[DoubtResponse, DriveLog]) -> int:
-        return sum(len(log.collisions) for log in each.rows)
-
     return table_of(
         f"Collisions without a teacher, {max((len(each.rows) for each in groups), default=0)} drives each",
         groups,
         ("doubt", lambda each: each.of.value),
-        ("collisions", collisions),
+        ("collisions", _collisions),
         ("with things seen", lambda each: sum(sum(log.seen) for log in each.rows)),
         ("in 100 min (95 % interval)", in_100_minutes),
-        ("in 100 driven min", lambda each: f"{100 * collisions(each) / minutes(each, driven=True):.1f}"),
+        ("in 100 driven min", lambda each: f"{100 * _collisions(each) / minutes(each, driven=True):.1f}"),
         ("time driven", lambda each: f"{100 * minutes(each, driven=True) / minutes(each):.0f} %"),
         ("m in a minute", lambda each: f"{sum(log.travelled_m for log in each.rows) / minutes(each):.1f}"),
         note=f"A question that is not answered for {set_down_after_s:g} s sets the robot down at another start."

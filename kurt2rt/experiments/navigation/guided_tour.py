@@ -2,7 +2,7 @@
 
 import random
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import NamedTuple
 
 from behaviors.metrics.errands import Errands, ErrandsSettings
@@ -135,13 +135,10 @@ class TourGuide:
         if fresh:
             return self._chance.choice(fresh)
         unfinished = [each for each in town.streets if any((each, on) not in self._led for on in town.on_from(each))]
-        way = town.nearest(street, self._shuffled(unfinished))
+        way = town.nearest(street, self._chance.sample(unfinished, len(unfinished)))
         if way is None or len(way) < 2:
             return self._chance.choice(list(possible))
         return next(behaviour for behaviour, on in possible.items() if on == way[1])
-
-    def _shuffled(self, streets: Sequence[Street]) -> list[Street]:
-        return self._chance.sample(streets, len(streets))
 
     def _command(self, street: Street, *, driving: bool) -> Command | None:
         """Return a command if the robot did not notice a junction for too long."""

@@ -140,14 +140,14 @@ def all_tables(study: PaperStudy) -> Iterator[Table]:
     reasons = list(reasons_not_to_judge(study.plan))
     for reading in study.readings:
         groups = study.of(reading)
-        how = "" if reading == "shipped" else "plain reading: "
-        yield paper_targets_table(groups, f"{how}what was asked", reasons)
-        yield _knowledge_table(groups, f"{how}what was taught")
+        how = ", plain reading" if reading == "plain" else ""
+        yield paper_targets_table(groups, f"What was asked{how}", reasons)
+        yield _knowledge_table(groups, f"What was taught{how}")
         worlds = [world for group in groups for world in worlds_of(group)]
-        yield _exam_table(worlds, f"{how}exams without teacher")
-        yield _drive_table(worlds, f"{how}drives of these exams")
+        yield _exam_table(worlds, f"Exams without teacher{how}")
+        yield _drive_table(worlds, f"Drives of these exams{how}")
         if any(robot.rlas_of for each in groups for robot in each.rows):
-            yield _behaviour_table(groups, f"{how}taught in common")
+            yield _behaviour_table(groups, f"Taught in common{how}")
     yield from map(_growth_table, study.growth)
 
 
@@ -156,7 +156,7 @@ def paper_targets_table(groups: Sequence[Examined], title: str, not_judged_becau
     return targets_table(
         [((each.of.label,), verdict) for each in groups for verdict in verdicts(each)],
         not_judged_because,
-        title=_sentence(title),
+        title=title,
         headings=("task",),
         note_without_targets="Of these tasks nothing is asked.",
     )
@@ -170,7 +170,7 @@ def _knowledge_table(groups: Sequence[Examined], title: str) -> Table:
     robots = max(len(each.rows) for each in groups)
     teachers = sorted({each.of.task.teaching.profile.name for each in groups})
     return table_of(
-        _sentence(title),
+        title,
         groups,
         _TASK,
         middle("RLAs", "lesson.rlas"),
@@ -187,7 +187,7 @@ def _knowledge_table(groups: Sequence[Examined], title: str) -> Table:
 def _exam_table(worlds: Sequence[Drives[Experiment]], title: str) -> Table:
     times = sorted({each.of.task.exam.duration_s for each in worlds})
     return table_of(
-        _sentence(title),
+        title,
         worlds,
         *_IN_WORLD,
         *SUCCESS,
@@ -213,7 +213,7 @@ def _drive_table(worlds: Sequence[Drives[Experiment]], title: str) -> Table:
         return f"{sum(each.failed for each in drives)}, {sum(each.got_nowhere for each in drives)}"
 
     return table_of(
-        _sentence(title),
+        title,
         worlds,
         *_IN_WORLD,
         PROGRESS,
@@ -240,7 +240,7 @@ def _behaviour_table(groups: Sequence[Examined], title: str) -> Table:
         return [robot.rlas_of[row[1]] for robot in row[0].rows]
 
     return table_of(
-        _sentence(title),
+        title,
         [(each, name) for each in groups for name in each.rows[0].rlas_of],
         ("task", lambda row: row[0].of.label),
         ("behaviour", lambda row: row[1]),
@@ -301,7 +301,7 @@ def unseen_table(group: Examined) -> Table:
     names = group.of.settings.unseen.names if group.of.settings.unseen is not None else ()
     drives = (drive for robot in group.rows for drive in robot.drives if drive.world in names)
     return table_of(
-        f"{_sentence(group.of.label)}: unseen worlds",
+        f"{group.of.label.capitalize()}: unseen worlds",
         sorted(drives, key=lambda each: (names.index(each.world), each.seed)),
         ("world", lambda each: each.world),
         ("robot", lambda each: each.seed),
@@ -310,10 +310,6 @@ def unseen_table(group: Examined) -> Table:
         ("progress of teacher's own", lambda each: f"{each.progress:.1f} of {measure_text(each, '.1f')} {each.unit}"),
         ("ended early", lambda each: each.early_end),
     )
-
-
-def _sentence(title: str) -> str:
-    return title[0].upper() + title[1:]
 
 
 def _settings_table(experiments: Iterable[Experiment]) -> Table:

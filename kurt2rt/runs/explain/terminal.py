@@ -1,13 +1,14 @@
 """Terminal rendering of an explanation and of a run's timeline."""
 
 import math
+from functools import partial
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.knowledge.show.table_cells import printable
-from kurt2rt.platform.text_table import TextTable
+from kurt2rt.platform.text_table import Column, TextTable
 from kurt2rt.runs.explain.attribution import contrast_attribution, distance_attribution
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
 from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
@@ -26,6 +27,7 @@ from kurt2rt.runs.explain.timeline import Kind, Stretch, Timeline, format_summar
 _FEATURES = 6
 _STYLES = {Kind.DRIVES: "green", Kind.LED: "magenta", Kind.ASKS: "red", Kind.STANDS: "yellow"}
 _BAR = 20
+_number = partial(Column, number=True)
 
 
 def render_why(
@@ -68,13 +70,8 @@ def _differences(level: LevelFacts, rla: RlaFacts, words: SensorWords) -> Render
     other = level.contrast_of(rla)
     pull = {} if other is None else contrast_attribution(level, rla, other)
     theirs = {} if other is None else dict(zip(level.names, other.condition, strict=True))
-    table = TextTable("feature")
-    table.add_column("here", number=True)
-    table.add_column(rla.name, number=True)
-    table.add_column("of the distance")
-    if other is not None:
-        table.add_column(other.name, number=True)
-        table.add_column("speaks for")
+    rival: list[str | Column] = [] if other is None else [_number(other.name), "speaks for"]
+    table = TextTable("feature", _number("here"), _number(rla.name), "of the distance", *rival)
     for share in found[:_FEATURES]:
         cells: list[str | Text] = [
             printable(words.place(share.name)),
@@ -124,13 +121,8 @@ def render_timeline(timeline: Timeline, where: str, most: int) -> RenderableType
                 "Give --from and --to for all of a shorter time."
             )
         )
-    table = TextTable()
-    for heading in ("from s", "to s", "lasts s"):
-        table.add_column(heading, number=True)
-    table.add_column("what")
-    table.add_column("RLAs (share of the time)")
-    table.add_column("farthest", number=True)
-    table.add_column("guard")
+    times = map(_number, ("from s", "to s", "lasts s"))
+    table = TextTable(*times, "what", "RLAs (share of the time)", _number("farthest"), "guard")
     for stretch in rows[:most]:
         table.add_row(*_row(stretch))
     parts.append(table)
@@ -138,9 +130,7 @@ def render_timeline(timeline: Timeline, where: str, most: int) -> RenderableType
         parts.append(Text(f"and {len(rows) - most} more"))
     notes = timeline.notes[:most]
     if notes:
-        told = TextTable()
-        told.add_column("at s", number=True)
-        told.add_column("what happened")
+        told = TextTable(_number("at s"), "what happened")
         for note in notes:
             told.add_row(
                 f"{note.at_s:.2f}", printable(f"{note.kind}: {note.text}" if note.kind == "alarm" else note.text)
@@ -159,10 +149,7 @@ def _shares(timeline: Timeline, whole_s: float) -> TextTable:
         key = stretch.kind, stretch.what
         lasts[key] = lasts.get(key, 0.0) + stretch.lasts_s
         times[key] = times.get(key, 0) + 1
-    table = TextTable("what")
-    table.add_column("s", number=True)
-    table.add_column("times", number=True)
-    table.add_column("share of the time")
+    table = TextTable("what", _number("s"), _number("times"), "share of the time")
     for kind, what in sorted(lasts, key=lambda key: -lasts[key]):
         share = lasts[kind, what] / whole_s
         bar = f"{100 * share:3.0f} % {'█' * round(_BAR * share)}"

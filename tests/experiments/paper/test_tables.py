@@ -101,7 +101,7 @@ def test_exams_without_a_measure_count_neither_way() -> None:
     assert (a[1], re.findall(r"\d+", a[2]), a[3]) == ("A", ["1", "2", "1"], "9% to 91%")
     assert (b[1], re.findall(r"\d+", b[2]), b[3]) == ("B", ["0", "0", "3"], "")
     assert [row[2] for row in unseen_table(summary).rows] == ["not judged"]
-    table = paper_targets_table([summary], "what was asked")
+    table = paper_targets_table([summary], "What was asked")
     said = verdicts_of(table)
     assert (said["success in A"][1], said["success in A"][2]) == (a[2], "MISSED")
     assert (said["success in B"][1], said["success in B"][2]) == (b[2], "not judged")
@@ -129,7 +129,7 @@ def test_targets_table_marks_missed_targets() -> None:
     robots = [
         robot(seed, 92, drive("a"), drive("b", passed=seed < 18), drive("c", passed=seed < 17)) for seed in range(20)
     ]
-    table = paper_targets_table([summary_of("wall_following", robots)], "what was asked")
+    table = paper_targets_table([summary_of("wall_following", robots)], "What was asked")
     assert {name: (*re.findall(r"\d+", asked), *rest) for name, (asked, *rest) in verdicts_of(table).items()} == {
         "RLAs, median": ("91", "92", "MISSED"),
         "teaching": ("345", "345 s", "met"),
@@ -148,7 +148,7 @@ def test_targets_table_marks_missed_targets() -> None:
 def test_streets_are_judged_by_junctions_and_collisions(right: int, collisions: int, verdicts: tuple[str, str]) -> None:
     found = {"junctions": 100.0, "junctions right": float(right)}
     robots = [robot(1, 130, drive("manhattan", collisions=collisions, duration_s=600.0, findings=found))]
-    said = verdicts_of(paper_targets_table([summary_of("streets", robots)], "what was asked"))
+    said = verdicts_of(paper_targets_table([summary_of("streets", robots)], "What was asked"))
     assert said["junctions right in manhattan"] == ("at least 95%", f"{right}.0% of 100", verdicts[0])
     assert said["collisions in 10 min in manhattan"] == ("below 0.5", f"{collisions:.2f}", verdicts[1])
 
