@@ -39,7 +39,7 @@ class Told:
     sentence: str = ""
     """Result in one sentence, which opens the report, too."""
     about: Sequence[str] = ()
-    """What was done, for the report alone; between backticks stands what is typed."""
+    """Texts for the report alone that say what was done; between backticks stands what is typed."""
     short: Table | None = None
     """Table of what was asked and what came, with the sentence alone on a terminal; None: it shows all tables."""
     not_judged: Sequence[str] = ()
@@ -61,9 +61,9 @@ def table_of(
 
 
 def settings_table(title: str, settings: Mapping[str, Mapping[str, Any]]) -> Table:
-    """Return a row for each setting, named as --set takes it, and a column for each of `settings` under its key."""
+    """Return a row for each setting that has a value, by its path, and a column for each of `settings` by its key."""
     columns = {heading: dict(_leaves(each, "")) for heading, each in settings.items()}
-    names = dict.fromkeys(name for each in columns.values() for name in each)
+    names = dict.fromkeys(name for each in columns.values() for name, text in each.items() if text)
     rows = tuple((name, *(each.get(name, "") for each in columns.values())) for name in names)
     return Table(title, ("setting", *columns), rows, words=1 + len(columns))
 
