@@ -247,29 +247,29 @@ def tell(plan: StudyPlan[Compared], command: str) -> Told:
     """
     rows, figure = read_rows(plan), plan.results.folder / "compare.png"
     draw_curves(rows, plan.about, figure)
-
-    def passed(row: Row) -> str:
-        return of_text(_passed_at(row, -1), len(_judged_of(row)))
-
     short = table_of(
         "At the end of the lessons",
         rows,
         *_TASK,
-        ("pass", passed),
+        ("pass", _passed_text),
         middle("presses", "lesson.presses", ".0f"),
         total("collisions", "lesson.collisions"),
         words=2,
     )
+    tables, reasons = list(all_tables(rows, plan)), list(reasons_against_judging(plan.seeds))
+    told = Told(tables, sentence_of(rows), (), short, reasons, {"figure": figure})
+    picture = SavedFigure(figure, "Robots that pass, by presses", "The band is the 95 % interval of the RLA system.")
+    return tell_with_report(plan.results.folder, "KURT2: learners compared", told, command, [picture])
+
+
+def sentence_of(rows: Sequence[Row]) -> str:
+    """Return how many robots pass at the end of the lessons, with the RLA system and with the best other learner."""
     found = []
     for task, (shipped, *others) in group_by(rows, lambda row: row.of[0]):
         best = max(others, key=lambda row: _passed_at(row, -1), default=None)
-        other = f" and {passed(best)} with the best other, {best.of[1].title}" if best else ""
-        found.append(f"{task}: {passed(shipped)} with the RLA system{other}")
-    sentence = f"Robots that pass: {'; '.join(found)}."
-    tables, reasons = list(all_tables(rows, plan)), list(reasons_against_judging(plan.seeds))
-    told = Told(tables, sentence, (), short, reasons, {"figure": figure})
-    picture = SavedFigure(figure, "Robots that pass, by presses", "The band is the 95 % interval of the RLA system.")
-    return tell_with_report(plan.results.folder, "KURT2: learners compared", told, command, [picture])
+        other = f" and {_passed_text(best)} with the best other, {best.of[1].title}" if best else ""
+        found.append(f"{task}: {_passed_text(shipped)} with the RLA system{other}")
+    return f"Robots that pass: {'; '.join(found)}."
 
 
 def read_rows(plan: StudyPlan[Compared]) -> tuple[Row, ...]:
@@ -285,6 +285,10 @@ def _judged_of(row: Row) -> tuple[PupilOutcome, ...]:
 def _passed_at(row: Row, place: int) -> int:
     """Return the number of judged robots that pass at the checkpoint of an index."""
     return sum(each.checkpoints[place].passed for each in _judged_of(row))
+
+
+def _passed_text(row: Row) -> str:
+    return of_text(_passed_at(row, -1), len(_judged_of(row)))
 
 
 _TASK: tuple[Column, ...] = (("task", lambda row: row.of[0]), ("learner", lambda row: row.of[1].title))

@@ -1,6 +1,7 @@
 """The end of a study: what fits a screen on a terminal, and everything in a pipe."""
 
 import io
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -22,14 +23,16 @@ def test_a_terminal_gets_at_most_19_lines_and_each_missed_target(monkeypatch: py
     screen = io.StringIO()
     console = Console(file=screen, width=columns, force_terminal=True, color_system=None)
     monkeypatch.setattr("kurt2rt.cli.tables.console_of", lambda: console)
-    print_told(TOLD, as_json=False)
+    told = replace(TOLD, short=replace(TARGETS, note="Once more:"), lines=("kurt2rt exam one", "kurt2rt exam two"))
+    print_told(told, as_json=False)
     lines = screen.getvalue().splitlines()
     assert len(lines) <= 19
     assert max(map(len, lines)) <= columns
     assert lines[0] == TOLD.sentence
     assert any("MISSED" in line for line in lines)
     assert "More rows in the report:" in " ".join(lines)
-    assert lines[-1].endswith("made/report.html")
+    assert lines[-3].endswith("Once more:")
+    assert lines[-2:] == ["kurt2rt exam one", "report  made/report.html"]
 
 
 def test_a_pipe_gets_all_rows(capsys: pytest.CaptureFixture[str]) -> None:

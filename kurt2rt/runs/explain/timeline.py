@@ -305,7 +305,7 @@ def telling_moment(timeline: Timeline) -> Moment | None:
     if timeline.surprised_s is not None:
         return Moment(timeline.surprised_s, "its greatest surprise")
     driven = [each for each in timeline.stretches if each.kind is Kind.DRIVES] or timeline.stretches
-    return Moment(driven[-1].from_s, "its last change of action") if driven else None
+    return Moment(driven[-1].from_s, "its last change") if driven else None
 
 
 def kind_intervals(timeline: Timeline, kind: Kind) -> tuple[tuple[float, float], ...]:

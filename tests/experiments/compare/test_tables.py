@@ -12,6 +12,7 @@ from kurt2rt.experiments.compare import (
     holm,
     mcnemar_p,
     paired_table,
+    sentence_of,
 )
 from kurt2rt.experiments.study.examination import Checkpoint
 from tests.experiments.compare.test_compare import AFTER, plan_for
@@ -57,6 +58,12 @@ def test_success_counts_judged_robots_by_presses() -> None:
     assert ours[:2] == ("wall_following", "RLA, as shipped")
     assert [cell.partition(" (")[0] for cell in ours[2:]] == ["0 of 2", "1 of 2", "2 of 2"]
     assert [cell.partition(" (")[0] for cell in theirs[2:]] == ["2 of 3", "2 of 3", "1 of 3"]
+
+
+def test_sentence_names_the_best_other_learner_if_there_is_one() -> None:
+    alone = "Robots that pass: wall_following: 2 of 2 with the RLA system"
+    assert sentence_of(comparison_of(OURS, THEIRS)) == f"{alone} and 1 of 3 with the best other, 1-NN without R."
+    assert sentence_of((Row(("wall_following", Pupil(SHIPPED)), OURS),)) == f"{alone}."
 
 
 def test_robots_without_a_verdict_have_no_share(tmp_path: Path) -> None:
