@@ -445,8 +445,11 @@ def tell(plan: StudyPlan[Certified], again: Sequence[BlockJob], words: Sequence[
         f"A taught robot drove {task.exam.duration_s:g} s in simulation, without a teacher, once for each number from "
         f"{runs[0].number} to {runs[-1].number}. A number makes the robot with the spread of its sensors, its noise "
         "and slip, its start and its world. The simulated robot stands in for a real one: slopes, carpets, people and "
-        "sunlight are not in it. The worst runs were driven again for their pictures, on the CAN bus and with the same "
-        "outcome. The line below a picture is the command that shows it again."
+        "sunlight are not in it."
+    )
+    driven_again = (
+        "The worst runs were driven again for their pictures, on the CAN bus and with the same outcome. The line below "
+        "a picture is the command that shows it again."
     )
     found = [
         {**each.model_dump(exclude=_LEFT_OUT), "broken": broken[each.seed], "command": word}
@@ -456,6 +459,6 @@ def tell(plan: StudyPlan[Certified], again: Sequence[BlockJob], words: Sequence[
     data |= {"compared": len(plan.witnesses), "worst": found}
     tables = list(all_tables(plan, summaries, worst))
     short = _shares_table("Share of the runs", summaries, note="The worst run once more:" if commands else "")
-    told = Told(tables, sentence, (about,), short, lines=commands, data=data)
+    told = Told(tables, sentence, (about, *([driven_again] if again else ())), short, lines=commands, data=data)
     title = f"KURT2: certificate of a robot that was taught {task.name}"
     return tell_with_report(plan.results.folder, title, told, command, list(draw_worst(again, commands)))
