@@ -206,6 +206,11 @@ class Phone:
         """Lift it."""
         self._finger("touchEnd", [])
 
+    def drag_by_mouse(self, x: float, y: float, to: tuple[float, float]) -> None:
+        """Drag with a mouse: after the flick of a finger a browser keeps the next tap to itself."""
+        for kind, (at_x, at_y) in (("mousePressed", (x, y)), ("mouseMoved", to), ("mouseReleased", to)):
+            self.tools.call("Input.dispatchMouseEvent", type=kind, x=at_x, y=at_y, button="left", clickCount=1)
+
     def key(self, kind: str, code: str) -> None:
         """Press or lift a key of a laptop: keyDown or keyUp, and its code."""
         key = {"Space": " ", "KeyW": "w", "KeyU": "u", "KeyY": "y"}.get(code, code)

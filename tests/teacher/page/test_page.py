@@ -433,11 +433,7 @@ def test_robot_is_dragged_along_the_axes_of_a_turned_room(a_lesson: Lesson) -> N
     a_lesson.begin()
     phone.wait(lambda: phone.shows("#world-view"), "the room has come")
     x, y = phone.run(_BODY)
-    phone.finger_down(x, y)
-    for _ in range(2):  # as a finger that rests: a browser keeps the tap after a flick to itself
-        phone.finger_to(x - 60, y + 30)
-        phone.pass_time(0.5)
-    phone.finger_up()
+    phone.drag_by_mouse(x, y, (x - 60, y + 30))
     phone.wait(lambda: a_lesson.robot.told_of("/world/place"), "it is put there")
     ((_, x_m, y_m, heading_rad),) = a_lesson.robot.told_of("/world/place")
     assert heading_rad == A_PLACE.heading_rad
