@@ -64,10 +64,9 @@ class Transfer(NamedTuple):
 
     def task_in(self, world: str) -> TaskSettings:
         """Return the task to teach and examine in a new world."""
-        task = self.task
-        teaching = task.teaching.model_copy(update={"world": world})
-        exam = task.exam.model_copy(update={"worlds": (world,)})
-        return task.model_copy(update={"teaching": teaching, "exam": exam})
+        teaching = self.task.teaching.model_copy(update={"world": world})
+        exam = self.task.exam.model_copy(update={"worlds": (world,)})
+        return self.task.model_copy(update={"teaching": teaching, "exam": exam})
 
     @property
     def lasts_s(self) -> float:

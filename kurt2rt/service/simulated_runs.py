@@ -1,6 +1,5 @@
 """Runs of the simulated robot, one after the other in one program: each with a world, a task and a knowledge file."""
 
-import re
 import secrets
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
@@ -33,11 +32,8 @@ from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.runtime import empty_system
+from simbridge.contracts.simulation import GENERATED_KINDS, GENERATED_WORLD
 
-_KINDS = ("rooms", "flats", "streets", "floors")
-"""Kinds of generated worlds, which exist for any whole number."""
-_GENERATED = re.compile(rf"({'|'.join(_KINDS)})-\d{{1,9}}", re.ASCII)
-"""A teacher chooses among names: a path would read any file of the robot's machine."""
 _ZIP = b"PK"
 
 
@@ -121,7 +117,8 @@ class SimulatedRuns:
         if self._taught_by_script:
             raise CommandRefusedError(RefusalCode.TAUGHT_BY_SCRIPT)
         view = await self.view()
-        if world is not None and world not in (*view.worlds, view.world) and not _GENERATED.fullmatch(world):
+        # A teacher chooses among names: a path would read any file of the robot's machine.
+        if world is not None and world not in (*view.worlds, view.world) and not GENERATED_WORLD.fullmatch(world):
             raise CommandRefusedError(RefusalCode.NO_WORLD, world=world, known=view.worlds)
         if task is not None and task not in (view.task, *(each.name for each in view.tasks)):
             raise CommandRefusedError(RefusalCode.NO_TASK, task=task, known=tuple(each.name for each in view.tasks))
@@ -217,7 +214,7 @@ class SimulatedRuns:
 
     def _list_choices(self) -> SimulationView:
         tasks = tuple(TaskName(name, load_task(name).sentence) for name in shipped_names("tasks"))
-        worlds = (*shipped_names("worlds"), *(f"{kind}-N" for kind in _KINDS))
+        worlds = (*shipped_names("worlds"), *(f"{kind}-N" for kind in GENERATED_KINDS))
         return SimulationView(self.present.world, self.present.task_name, worlds, tasks)
 
 

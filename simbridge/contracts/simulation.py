@@ -5,6 +5,7 @@ and `SimulatedWorld` is the part that a teacher may see and change. A real robot
 """
 
 import random
+import re
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
@@ -15,6 +16,12 @@ from hal.tap import Tap
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+
+GENERATED_KINDS = ("rooms", "flats", "streets", "floors")
+"""Kinds of generated worlds, one for each whole number of up to 9 digits, such as rooms-17."""
+GENERATED_WORLD = re.compile(rf"({'|'.join(GENERATED_KINDS)})-(0|[1-9]\d{{0,8}})", re.ASCII)
+"""Pattern of their names: kind and number."""
 
 
 class Position(NamedTuple):

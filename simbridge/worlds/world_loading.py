@@ -1,6 +1,5 @@
 """Loader of worlds by name or path, with a check that the robot can drive in them."""
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,6 +9,7 @@ from config.plugins import PluginError, UnknownPluginError
 from config.settings import SettingsError, content_of, load_settings, settings_of
 from config.settings_files import WORLDS, find_config, plugin_file
 from hal.robot_settings import GeometrySettings, RobotSettings, load_robot
+from simbridge.contracts.simulation import GENERATED_KINDS, GENERATED_WORLD
 from simbridge.worlds.generator.flats import flat
 from simbridge.worlds.generator.floors import cluttered_floor
 from simbridge.worlds.generator.rooms import room
@@ -22,8 +22,7 @@ START_CLEARANCE_M = 0.05
 
 GENERATED = "rooms-N, flats-N, streets-N or floors-N with any whole number N up to 9 digits, such as rooms-17"
 """Valid names of generated worlds, for messages."""
-_GENERATORS = {"rooms": room, "flats": flat, "streets": streets, "floors": cluttered_floor}
-_GENERATED = re.compile(rf"({'|'.join(_GENERATORS)})-(0|[1-9]\d{{0,8}})", re.ASCII)
+_GENERATORS = dict(zip(GENERATED_KINDS, (room, flat, streets, cluttered_floor), strict=True))
 
 _IMAGES = (".png", ".pgm", ".ppm", ".pbm", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".svg")
 """Suffixes of images, which are no worlds."""
@@ -151,7 +150,7 @@ def require_drivable(world: WorldSettings, geometry: GeometrySettings, source: s
 
 def _generated(name: str) -> WorldSettings | None:
     """Return the generated world of this name, always the same; None if it is no name of a generated world."""
-    match = _GENERATED.fullmatch(name)
+    match = GENERATED_WORLD.fullmatch(name)
     if match is None:
         return None
     return _GENERATORS[match[1]](int(match[2]))

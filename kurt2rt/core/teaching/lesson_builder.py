@@ -156,6 +156,9 @@ class LessonBuilder:
             self._learner.teach(context.vector, context.behaviour, action, why, origin.command_id)
 
     def _is_within(self, share: float, nearest: Match) -> bool:
+        """Return whether a lesson is about the nearest RLA; of one that is near at another width only it is not."""
+        if self._system.is_estimate(nearest):
+            return False
         return nearest.distance <= share * self._system.whole_radius(nearest.rla)
 
     def _action_lesson(self, command: Teach | Correct, situation: Situation, origin: Origin) -> LessonResult:
@@ -194,11 +197,8 @@ class LessonBuilder:
     def _corrected(
         self, action: str, nearest: Match | None, context: LessonContext, replace_within_share: float, origin: Origin
     ) -> LessonResult:
-        """Replace the action of the nearest RLA within a share of its radius, else create another one.
-
-        What is near at another width only stays right where it was taught, so a correction there creates one.
-        """
-        if nearest is None or not self._is_within(replace_within_share, nearest) or self._system.is_estimate(nearest):
+        """Replace the action of the nearest RLA within a share of its radius, else create another one."""
+        if nearest is None or not self._is_within(replace_within_share, nearest):
             return self._create(action, context, origin)
         rla = self._corrected_rla(nearest.rla, context)
         if rla.action == action:

@@ -3,6 +3,7 @@
 import { BASIC } from "./mid_text.js";
 import { INK, sheet } from "./canvas.js";
 import { drawSensing } from "./robot_view.js";
+import { asks } from "./decision.js";
 import { differenceList } from "./sensors.js";
 
 const CAPTION_PX = 15;
@@ -20,9 +21,10 @@ export class Compare {
   }
 
   // Asks the robot for the condition once the state whose question is shown is nearest to another RLA.
-  update({ stands, asks_at: at, nearest, nearest_image: image, lessons, question: differences }) {
-    const asks = stands.asks && !stands.needs_go && at === BASIC && nearest !== null;
-    const question = asks ? `${nearest} ${image} ${lessons}` : "";
+  update(state) {
+    const { nearest, nearest_image: image, lessons } = state;
+    const compares = asks(state) && state.asks_at === BASIC && nearest !== null;
+    const question = compares ? `${nearest} ${image} ${lessons}` : "";
     if (question !== this.#question) {
       this.#question = question;
       this.#taught = null;
@@ -30,7 +32,7 @@ export class Compare {
     }
     this.#box.classList.toggle("drawn", this.#taught !== null);
     if (!this.#taught) return;
-    const lines = [...differenceList(differences).children].map((each) => each.textContent);
+    const lines = [...differenceList(state.question).children].map((each) => each.textContent);
     this.#canvas.setAttribute("aria-label", `Now, and as taught: ${lines.join("; ")}`);
   }
 

@@ -81,7 +81,8 @@ export function sentence(state) {
   }
 }
 
-function asks({ stands }) {
+// Returns whether the robot stands and waits for an answer, and not for a GO.
+export function asks({ stands }) {
   return stands.asks && !stands.needs_go;
 }
 

@@ -1,7 +1,7 @@
 // Time line: the last minute of driving with its bumps, questions and lessons. A touch stops the robot and shows that
 // moment; the action that is touched then corrects it.
 
-import { sentence, setText } from "./decision.js";
+import { asks, sentence, setText } from "./decision.js";
 import { text } from "./texts.js";
 
 const KEPT_TICKS = 6000; // of driving; the robot keeps 6200, and drives some more until it has stopped
@@ -198,8 +198,4 @@ export class Rewind {
 
 function turns({ left_m_s: left, right_m_s: right }) {
   return Boolean(left || right);
-}
-
-function asks({ stands }) {
-  return stands.asks && !stands.needs_go;
 }

@@ -1,5 +1,7 @@
 // Path of the simulated robot in the last minute, and the points of its questions; kept over a reload of the page.
 
+import { asks } from "./decision.js";
+
 const TRAIL_S = 60;
 const EACH_MS = 100;
 const MOST_ASKED = 200;
@@ -25,13 +27,14 @@ export class Trail {
     [this.points, this.asked] = stored(boot);
   }
 
-  add({ place, stands }) {
+  add(state) {
+    const { place } = state;
     if (!place) return;
     const now = Date.now();
     const last = this.points.at(-1);
     if (!last || now - last[0] >= EACH_MS || now < last[0]) this.points.push([now, round(place.x_m), round(place.y_m)]);
     while (this.points.length && now - this.points[0][0] > TRAIL_S * 1000) this.points.shift();
-    const asking = stands.asks && !stands.needs_go;
+    const asking = asks(state);
     if (asking && !this.#asking) {
       this.asked.push([round(place.x_m), round(place.y_m)]);
       if (this.asked.length > MOST_ASKED) this.asked.shift();
