@@ -101,9 +101,9 @@ def _leaves(error: BaseException) -> list[BaseException]:
 
 
 def _complain(text: str, code: ExitCode = ExitCode.REFUSED) -> NoReturn:
-    from rich.console import Console
+    from kurt2rt.cli.tables import say
 
-    Console(stderr=True, highlight=False).print(f"kurt2rt: {text}", style="red", markup=False, soft_wrap=True)
+    say(f"kurt2rt: {text}", "red", stderr=True)
     sys.exit(code)
 
 

@@ -10,7 +10,7 @@ import typer
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import RecordedRun, RunsFolder, SettingsName
 from kurt2rt.cli.progress import job_bars
-from kurt2rt.cli.tables import console_of
+from kurt2rt.cli.tables import console_of, say
 from kurt2rt.platform.text_table import TextTable, print_whole
 from kurt2rt.runs.recording.recording import LAYOUT
 from kurt2rt.runs.recording.recording_error import RecordingError
@@ -90,11 +90,11 @@ def repair(
         except NothingRecoverableError as error:
             if len(segments) == 1:
                 raise
-            typer.echo(f"{error}; not copied")
+            say(f"{error}; not copied")
             continue
-        typer.echo(truncated or f"{segment} is whole")
-        typer.echo(f"copied to {out / segment.name}")
-    typer.echo(f"layout for Foxglove: {LAYOUT}")
+        say(truncated or f"{segment} is whole")
+        say(f"copied to {out / segment.name}")
+    say(f"layout for Foxglove: {LAYOUT}")
 
 
 @recording.command()
@@ -138,8 +138,8 @@ def export(
         return
     for each in exported:
         episodes = "1 episode" if each.episodes == 1 else f"{each.episodes} episodes"
-        typer.echo(f"{each.run}: {episodes}, {each.frames} frames" + (f"; {each.trouble}" if each.trouble else ""))
-    typer.echo(f"data set  {out}")
+        say(f"{each.run}: {episodes}, {each.frames} frames" + (f"; {each.trouble}" if each.trouble else ""))
+    say(f"data set  {out}")
 
 
 @contextmanager

@@ -13,6 +13,7 @@ from kurt2rt.cli.json_output import AsJson, plain, print_json
 from kurt2rt.cli.knowledge.shared import change_lines
 from kurt2rt.cli.options import RecordedRun, RunsFolder, SettingsName
 from kurt2rt.cli.progress import job_bars
+from kurt2rt.cli.tables import say
 from kurt2rt.runs.recording.run_folder import find_run
 from kurt2rt.runs.replay.counterfactual import counterfactual
 from kurt2rt.runs.replay.counterfactual_policy import load_policy
@@ -73,7 +74,7 @@ def _verify(run: Run, *, as_json: bool) -> None:
         print_json({**told, **plain(replace(verdict, differences=())), "differences": differences})
     else:
         for line in _verdict_in_words(run, verdict):
-            typer.echo(line)
+            say(line)
     if not verdict.same or not verdict.whole:
         raise typer.Exit(ExitCode.FAILED)
 
@@ -111,11 +112,11 @@ def _compare(run: Run, knowledge: Path, *, as_json: bool) -> None:
         told = {"run": run.name, "knowledge": knowledge, "same": found.same}
         print_json({**told, **plain(replace(found, stretches=())), "stretches": stretches})
         return
-    typer.echo(f"{_title(run)}; with {knowledge}:")
+    say(f"{_title(run)}; with {knowledge}:")
     for line in change_lines(Path(run.name).name, found):
-        typer.echo(line)
+        say(line)
     if found.trouble:
-        typer.echo(found.trouble)
+        say(found.trouble)
 
 
 def _title(run: Run) -> str:

@@ -93,7 +93,7 @@ async def _run(options: _Options, device: Device, names: RosSettings) -> None:
     reason = ""
 
     def say(text: str) -> None:
-        console.print(text, markup=False, highlight=False, soft_wrap=True)
+        console.print(text, markup=False, highlight=False, soft_wrap=not console.is_terminal)
 
     async def serve() -> None:
         session = await _open_session(options, names, say)

@@ -110,7 +110,9 @@ def _simulate(options: _Options, settings: RobotSettings) -> None:
         printer = stack.enter_context(ConsoleThread())
 
         def log(text: str) -> None:
-            printer.submit(lambda: console.print(text, markup=False, highlight=False, soft_wrap=True))
+            printer.submit(
+                lambda: console.print(text, markup=False, highlight=False, soft_wrap=not console.is_terminal)
+            )
 
         robot_end = cast("RobotEnd", kind_of(settings).serve(settings, options.bus))
         standalone = StandaloneRobot(

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.cli.json_output import AsJson
@@ -22,7 +21,7 @@ from kurt2rt.cli.options import (
     task_option,
 )
 from kurt2rt.cli.progress import OneBar, one_bar
-from kurt2rt.cli.tables import print_told
+from kurt2rt.cli.tables import print_told, say
 from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.core.task_settings import TaskSettings, taught_by_named
 from kurt2rt.experiments.study.jobs import JobParts, Results
@@ -100,7 +99,7 @@ def say_if_interpreted() -> None:
     from simbridge.batch.compiled import IS_COMPILED
 
     if not IS_COMPILED:
-        typer.echo("numba is not installed (extra fast): the batch runs as plain Python, as slow as the bus", err=True)
+        say("numba is not installed (extra fast): the batch runs as plain Python, as slow as the bus", stderr=True)
 
 
 @contextmanager
@@ -157,11 +156,7 @@ def hold_study(results: Results, source: str, options: JobOptions, waves: Waves 
         if group.subgroup(KeyboardInterrupt) is not None:
             jobs, left = sum(map(len, waves)), sum(len(results.missing(wave)) for wave in waves)
             done = f" after {jobs - left} of {jobs} jobs" if jobs else ""
-            Console(stderr=True, highlight=False).print(
-                f"kurt2rt: interrupted{done}; the same command goes on from there ({results.folder})",
-                markup=False,
-                soft_wrap=True,
-            )
+            say(f"kurt2rt: interrupted{done}; the same command goes on from there ({results.folder})", stderr=True)
         raise
 
 
@@ -177,7 +172,7 @@ def run_study(plan: StudyPlan[AboutT], options: JobOptions, tell: Callable[[Runn
         jobs, witnesses = f"{batch} job{'' if batch == 1 else 's'}", len(plan.witnesses)
         in_batch = [f"the study has {jobs} in the batch, {witnesses} of them on the CAN bus too"] if batch else []
         for line in (*plan.refusals, *in_batch) if missing_s else ():
-            typer.echo(line, err=True)
+            say(line, stderr=True)
         with one_bar(missing_s) as bar:
             run_missing(plan.waves, results, executor, bar.update)
             bar.say("tables and figures")

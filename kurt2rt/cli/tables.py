@@ -20,12 +20,20 @@ _SCREEN = 19
 """Lines of a study's results on a terminal, which leaves one of 20 for what it says before."""
 
 
-def console_of() -> Console:
-    """Return a console on standard output: as wide as the terminal or COLUMNS; a file gets each line whole."""
-    console = Console(highlight=False)
-    if console.is_terminal or "COLUMNS" in os.environ:
-        return console
-    return Console(highlight=False, width=_UNLIMITED)
+def console_of(*, stderr: bool = False) -> Console:
+    """Return a console as wide as the terminal or COLUMNS; a file gets each line whole.
+
+    `stderr`: on standard error instead of standard output.
+    """
+    console = Console(highlight=False, stderr=stderr)
+    if not (console.is_terminal or "COLUMNS" in os.environ):
+        console.width = _UNLIMITED
+    return console
+
+
+def say(text: str, style: str = "", *, stderr: bool = False) -> None:
+    """Print a paragraph to standard output, or to standard error: notices and errors, no word of them broken."""
+    print_whole(console_of(stderr=stderr), Text(text, style))
 
 
 def print_told(told: "Told", *, as_json: bool) -> None:

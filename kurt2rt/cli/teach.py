@@ -178,7 +178,7 @@ def _teach(route: _Route, teacher: Callable[[TeacherClient, _Print], Awaitable[N
     console = Console()
 
     def print_line(text: str) -> None:
-        console.print(text, markup=False, highlight=False, soft_wrap=True)
+        console.print(text, markup=False, highlight=False, soft_wrap=not console.is_terminal)
 
     async def run() -> None:
         async with (

@@ -72,7 +72,9 @@ class TerminalScreen:
             self._live.print(text, style)
             return
         level = _LEVELS.get(style or "", "") if self._to_journal else ""
-        self._console.print(f"{level}{text}", style=style, markup=False, highlight=False, soft_wrap=True)
+        self._console.print(
+            f"{level}{text}", style=style, markup=False, highlight=False, soft_wrap=not self._console.is_terminal
+        )
 
     def lesson_saved(self, text: str) -> None:
         """Print the text of a durable lesson, on a live terminal only."""

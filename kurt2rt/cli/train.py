@@ -12,7 +12,7 @@ from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.options import changes_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.study_run import job_parts, run_study
-from kurt2rt.cli.tables import console_of
+from kurt2rt.cli.tables import console_of, say
 from kurt2rt.cli.train_options import DEFAULT_TASK, FOLDER, TrainOptions, TrainSetup
 from kurt2rt.cli.train_route import errands, many_routes, one_route, require_no_route_options
 from kurt2rt.cli.typed_command import typed_command
@@ -69,9 +69,7 @@ def train(options: TrainOptions) -> None:
     if options.seeds is not None and options.knowledge is not None:
         raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
     if task.mid is not None and options.engine is EngineRequest.COMPILED:
-        typer.echo(
-            f"{task.name}: lessons and exams on the CAN bus, because a batch does not know a mid level", err=True
-        )
+        say(f"{task.name}: lessons and exams on the CAN bus, because a batch does not know a mid level", stderr=True)
     if isinstance(task.metric, ErrandsSettings):
         errands(setup, options)
     elif not isinstance(task.metric, RouteSettings):

@@ -17,7 +17,7 @@ from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, ONLOOKER, local_pa
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import RecordedRun, RobotAddress, RobotPort, RunsFolder, SettingsName, refuse_if, seconds_of
-from kurt2rt.cli.tables import console_of
+from kurt2rt.cli.tables import console_of, say
 from kurt2rt.cli.why_live import ask_why
 from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.platform.text_table import print_whole
@@ -134,7 +134,7 @@ def why(options: _Options) -> None:
     else:
         _show_decision(console, recorded, options.at, options)
     if recorded.trouble and not options.as_json:
-        console.print(f"The recording: {recorded.trouble}.", markup=False, highlight=False, soft_wrap=True)
+        say(f"The recording: {recorded.trouble}.")
 
 
 def _read_timeline(run: Run, options: _Options) -> Timeline:
@@ -190,13 +190,10 @@ def _show_decision(console: Console, run: Run, at_s: float, options: _Options) -
         words = words_for(run.robot.infrared)
         print_whole(console, render_why(explained.facts, explained.counterfactuals, where, words))
     if explained.difference is not None and not options.as_json:
-        console.print(
+        say(
             f"This program decides otherwise than the one that was recorded: {explained.difference}. "
             "What stands above is what this one makes of it; kurt2rt replay tells more.",
-            markup=False,
-            highlight=False,
-            soft_wrap=True,
-            style="yellow",
+            "yellow",
         )
     _draw(explained.facts, explained.counterfactuals, run.robot, where, options)
 

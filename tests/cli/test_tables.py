@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from kurt2rt.cli.tables import print_told
+from kurt2rt.cli.tables import print_told, say
 from kurt2rt.experiments.study.table import Told, Verdict, targets_table
 
 VERDICTS = [
@@ -38,3 +38,16 @@ def test_a_terminal_gets_at_most_19_lines_and_each_missed_target(monkeypatch: py
 def test_a_pipe_gets_all_rows(capsys: pytest.CaptureFixture[str]) -> None:
     print_told(TOLD, as_json=False)
     assert capsys.readouterr().out.count("exams passed in world") == 40
+
+
+def test_an_error_is_broken_between_words_alone(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = "/a/folder/with/a/long/name.knowledge: cannot be read; give the path of a knowledge file"
+    for columns, lines in (("40", 3), ("", 1)):
+        monkeypatch.setenv("COLUMNS", columns) if columns else monkeypatch.delenv("COLUMNS")
+        say(text, "red", stderr=True)
+        printed = capsys.readouterr().err.splitlines()
+        assert len(printed) == lines
+        assert " ".join(printed) == text
+        assert "knowledge file" in printed[-1]

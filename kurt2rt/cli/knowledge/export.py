@@ -7,8 +7,9 @@ import typer
 
 from hal.robot_settings import load_robot_of
 from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
+from kurt2rt.cli.knowledge.shared import KnowledgeFile
 from kurt2rt.cli.options import RobotName, TaskOfTheFile, refuse_if, task_option
+from kurt2rt.cli.tables import say
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.exchange.package import export_knowledge, import_knowledge, read_package

@@ -7,8 +7,7 @@ from typing import Annotated
 import typer
 
 from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.knowledge.shared import say
-from kurt2rt.cli.tables import console_of
+from kurt2rt.cli.tables import console_of, say
 from kurt2rt.knowledge.exchange.package import IMPORTED_FROM
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal

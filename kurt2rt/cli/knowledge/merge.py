@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from kurt2rt.cli.knowledge.shared import KnowledgeFile, format_lesson, say
+from kurt2rt.cli.knowledge.shared import KnowledgeFile, format_lesson
+from kurt2rt.cli.tables import say
 from kurt2rt.knowledge.versions.merge import merge as append_lessons
 
 

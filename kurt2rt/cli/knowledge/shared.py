@@ -37,11 +37,6 @@ def replaying() -> Iterator[Report]:
         yield lambda run, done_s, whole_s: progress.update(line, description=run, completed=done_s, total=whole_s)
 
 
-def say(text: str) -> None:
-    """Print a line to standard output, without markup."""
-    Console(highlight=False).print(text, markup=False, soft_wrap=True)
-
-
 def format_lesson(record: LessonRecord) -> str:
     """Return a lesson in a few words, with its command id."""
     origin = record.event.origin

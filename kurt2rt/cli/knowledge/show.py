@@ -8,9 +8,9 @@ from behaviors.action_groups import action_groups
 from config.errors import ExitCode
 from hal.robot_settings import load_robot_of
 from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.knowledge.shared import WIDE, KnowledgeFile, say
+from kurt2rt.cli.knowledge.shared import WIDE, KnowledgeFile
 from kurt2rt.cli.options import RobotName, TaskOfTheFile
-from kurt2rt.cli.tables import console_of
+from kurt2rt.cli.tables import console_of, say
 from kurt2rt.core.critic.settings import critic_of
 from kurt2rt.core.outcome_text import neighbours_text
 from kurt2rt.core.perception.definition import load_situation
@@ -90,7 +90,7 @@ def check(file: KnowledgeFile, as_json: AsJson = False) -> None:
         print_json({"file": file, "sound": not faults, "faults": faults})
     else:
         for line in faults or [f"{file}: every lesson can be read and fits"]:
-            typer.echo(line)
+            say(line)
     if faults:
         raise typer.Exit(ExitCode.FAILED)
 

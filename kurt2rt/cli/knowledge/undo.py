@@ -9,7 +9,8 @@ import typer
 
 from config.errors import ExitCode
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, change_lines, format_lesson, replaying, say
+from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, change_lines, format_lesson, replaying
+from kurt2rt.cli.tables import say
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.knowledge.journal.writer import utc_now
 from kurt2rt.knowledge.versions.editing import require_no_robot
