@@ -15,8 +15,8 @@ import sys
 from contextlib import ExitStack
 
 from hal.robot_settings import load_robot
+from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.channel.server.endpoint import ChannelError
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Correct, Resume, Take, Teach
 from kurt2rt.teacher import RobotProcess, Teacher

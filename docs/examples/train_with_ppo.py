@@ -24,7 +24,7 @@ Choose = Callable[[Any, dict[str, Any]], int]
 
 def make(task: str) -> gym.Env[Any, Any]:
     """Return the environment of a task, with observations between -1 and 1."""
-    return RescaleObservation(gym.make(task, engine="compiled"), -1.0, 1.0)
+    return RescaleObservation(gym.make(task, engine="compiled"), -1.0, 1.0)  # type: ignore[arg-type]
 
 
 def drive(env: gym.Env[Any, Any], choose: Choose, world: str, seed: int) -> tuple[float, bool]:
