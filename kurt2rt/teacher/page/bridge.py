@@ -17,6 +17,7 @@ from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import Take
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
+from kurt2rt.teacher.page.cached_resources import CachedResources
 from kurt2rt.teacher.page.control_lease import ControlLease, OperatorPresence
 from kurt2rt.teacher.page.messages import (
     Hidden,
@@ -30,7 +31,6 @@ from kurt2rt.teacher.page.messages import (
     Why,
 )
 from kurt2rt.teacher.page.page_connection import PageConnection, SentState
-from kurt2rt.teacher.page.slow_state import SlowState
 from kurt2rt.teacher.page.texts import PageNotice, text_of
 from kurt2rt.teacher.page.views import answer_view, refusal_view, state_view, why_view
 
@@ -73,13 +73,13 @@ class Bridge:
         self._ending_presses = 0
         self._reported_silent_s = float("-inf")
         self._tasks: anyio.abc.TaskGroup | None = None
-        self._slow = SlowState(robot, self._send_to_all, lambda: self._answered)
+        self._cached = CachedResources(robot, self._send_to_all, lambda: self._answered)
 
     async def run(self, *, task_status: anyio.abc.TaskStatus[None] = anyio.TASK_STATUS_IGNORED) -> None:
         """Follow the robot's states and poll the pages until cancelled; call it before pages connect."""
         async with anyio.create_task_group() as tasks:
             self._tasks = tasks
-            self._slow.start(tasks)
+            self._cached.start(tasks)
             for task in (self._follow_states, self._poll_forever):
                 tasks.start_soon(task)
             task_status.started()
@@ -114,7 +114,7 @@ class Bridge:
         self._connections[connection.number] = connection
         self._lease.connect(connection.number, self._now())
         self._on_lease_change(before)
-        for topic, message in self._slow.messages():
+        for topic, message in self._cached.messages():
             connection.send(message, topic=topic)
         return connection
 
@@ -237,11 +237,11 @@ class Bridge:
         # A list of lessons with an `after` of at least this number shows the command's lesson.
         connection.send({**view, "done": self._answered})
         if self._newest is not None:
-            self._slow.update_lessons(self._newest)
+            self._cached.update_lessons(self._newest)
 
     async def _explain(self, connection: PageConnection, number: int) -> None:
         async def ask() -> dict[str, Any]:
-            return why_view(number, await self._robot.why(), self._slow.words)
+            return why_view(number, await self._robot.why(), self._cached.words)
 
         connection.send(await _await_view(connection, number, ask))
 
@@ -340,8 +340,8 @@ class Bridge:
                 self._stopped_s = self._now()
             self._newest = state
             self._update_presence()
-            self._slow.update(state, watched=bool(self._connections))
-            robot, refused, words = self._robot, self._press_refusal(), self._slow.words
+            self._cached.update(state, watched=bool(self._connections))
+            robot, refused, words = self._robot, self._press_refusal(), self._cached.words
             view = state_view(state, robot.link, robot.state_age_s, refused, words, self._device)
             for connection in self._connections.values():
                 connection.set_state(state.boot, view)

@@ -10,7 +10,7 @@ import pytest
 from anyio.from_thread import BlockingPortal
 
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.teacher.page.slow_state import CachedResource
+from kurt2rt.teacher.page.cached_resources import CachedResource
 from tests.teacher.page.fake_robot import A_PLACE, FakeRobot
 from tests.teacher.page.page_time import PageTime, stepped_portal
 from tests.teacher.page.phone import PORTRAIT, Phone
@@ -89,7 +89,7 @@ def lessons(phone: Phone) -> Iterator[Lesson]:
     """Serve a page and a robot, for one lesson after another."""
     quick = partial(CachedResource, pause_s=_PAUSE_S)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("kurt2rt.teacher.page.slow_state.CachedResource", quick)
+        patch.setattr("kurt2rt.teacher.page.cached_resources.CachedResource", quick)
         with (
             stepped_portal() as (portal, time),
             portal.wrap_async_context_manager(served()) as page,

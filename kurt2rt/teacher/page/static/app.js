@@ -83,7 +83,9 @@ async function sendCommand(path, fields = {}, doing = path.split("/").pop()) {
 }
 
 function showAnswer(answer) {
-  showMessage(answer.accepted ? "saved" : "refused", answer.text || (answer.accepted ? "done" : `refused: ${answer.why}`));
+  const { accepted, why, text: said } = answer;
+  if (accepted) showMessage("saved", words(said) || "done");
+  else showMessage("refused", said || `refused: ${why}`);
   navigator.vibrate?.(answer.accepted ? 20 : [30, 40, 30]);
   return answer;
 }
@@ -465,7 +467,10 @@ function showControl() {
   setText($("claim-button"), text(another ? "takeOver" : page.seat === "here" ? "takeRobot" : "takeControl", { teacher }));
 }
 
-const take = () => sendCommand("/take", {}, "take");
+async function take() {
+  const { accepted } = await sendCommand("/take", {}, "take");
+  if (accepted) showMessage("saved", text("taken"));
+}
 $("claim-button").addEventListener("click", take);
 $("take-here").addEventListener("click", take);
 

@@ -9,7 +9,7 @@ const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "
 const VALUES_FROM_PHASE = 3;
 const CALM_MS = 1000; // a text stays for so long at least, so that it can be read
 const ASKED = ["unknown", "doubt", "touches"]; // causes by which a state has a question
-const LIKE = [[0.3, "just like"], [1, "quite like"], [1.6, "a bit like"]]; // up to which share of R
+const LIKE = [[0.3, "just like"], [1, "quite like"], [1.6, "a bit like"], [Infinity, "far from"]]; // up to which share of R
 const GAUGE_SHARE = 0.7; // position of R on the gauge
 
 export function when(stamp) {
@@ -101,8 +101,8 @@ function actsOf({ stands, by_hand: byHand, lessons, phase, behaviour }, { boot }
 
 // Returns how like the nearest RLA's condition the situation is, in words; the numbers are in the explanation.
 function likeness(state) {
-  const [, like] = LIKE.find(([most]) => state.distance / state.radius <= most) ?? [];
-  return like ? `${like} ${nearest(state)}` : `far from anything I know, nearest ${nearest(state)}`;
+  const [, like] = LIKE.find(([most]) => state.distance / state.radius <= most);
+  return `${like} ${nearest(state)}`;
 }
 
 // Returns the sentence of a state, and which RLA is nearest.
@@ -120,7 +120,7 @@ function headline(state) {
 // Returns the texts of a state that change with each reading.
 function numbersOf(state, hello) {
   const value = state.value === null || state.phase < VALUES_FROM_PHASE ? "" : ` · value ${signed(state.value)}`;
-  const off = known(state) ? `${state.distance.toFixed(0)} of R ${state.radius.toFixed(0)}${value}` : "no RLA yet";
+  const off = known(state) ? `${likeness(state)}${value}` : "no RLA yet";
   const basic = asks(state) ? state.question.map((line) => line.slice(3)) : null;
   return {
     off: asksWay(state) ? differs(state, hello.mid) : off,

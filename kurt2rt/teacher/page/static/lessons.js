@@ -91,7 +91,7 @@ export class Lessons {
     row.classList.toggle("undone", undone);
     const told = document.createElement("span");
     const what = document.createElement("b");
-    what.textContent = lesson;
+    what.textContent = words(lesson);
     const who = document.createElement("small");
     who.textContent = [teacher === this.#device ? "you" : teacher, `phase ${phase}`, when(stamp) || "not saved yet"].join(" · ");
     told.append(what, who);

@@ -13,7 +13,7 @@ const SURPRISED_TICKS = 300;
 export function differs({ distance, radius }, [kind, length]) {
   if (distance === null) return "none is near";
   return kind === HISTORY
-    ? `${distance.toFixed(0)} of ${length} differ, R ${radius.toFixed(0)}`
+    ? `${distance.toFixed(0)} of ${length} differ`
     : `${distance.toFixed(2)} off, R ${radius.toFixed(2)}`;
 }
 

@@ -24,6 +24,7 @@ const TEXTS = {
   takeOver: "Take over from {teacher}",
   takeRobot: "Take the robot",
   takeControl: "Take control",
+  taken: "You are the teacher.",
   rewound: "{seconds} s before it stood{marked}: {sentence}. Touch what was right there.",
   marked: ", where it {did}",
   bump: "touched something",

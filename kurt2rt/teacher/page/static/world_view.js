@@ -8,6 +8,7 @@ const GRAB_PX = 26;
 const CLICK_PX = 8;
 const HANDLE_M = 0.46;
 const MARGIN_PX = 8; // round the whole room
+const HANDLE_PX = 12; // round the robot and the middle of its handle
 const FILLED = 0.72; // least share of the box that the room takes
 const TURN_GAIN = 1.2; // a room is turned if the whole of it gets larger by this
 const LEAST_PX_PER_M = 60; // of a large world, so that the robot stays to be seen
@@ -88,13 +89,14 @@ export class WorldView {
     const turned = whole(sizeY, sizeX) > TURN_GAIN * whole(sizeX, sizeY);
     const [across, up] = turned ? [sizeY, sizeX] : [sizeX, sizeY];
     const scale = Math.max(whole(across, up), FILLED * Math.max(width / across, height / up), LEAST_PX_PER_M);
-    const { x_m: x, y_m: y } = (this.#rewind.state ?? this.#state).place;
-    const free = Math.max(0, width - across * scale);
+    const { place } = this.#rewind.state ?? this.#state;
+    const [handleX, handleY] = handle(place);
+    const free = Math.max(0, width - across * scale - 2 * MARGIN_PX);
     return {
       scale,
       turned,
-      x: within(x, sizeX, (turned ? height : width) / 2 / scale, MARGIN_PX / scale),
-      y: within(y, sizeY, (turned ? width : height) / 2 / scale, MARGIN_PX / scale),
+      x: within([place.x_m, handleX], sizeX, (turned ? height : width) / 2, scale),
+      y: within([place.y_m, handleY], sizeY, (turned ? width : height) / 2, scale),
       middle: [width / 2 - Math.min(free, BUTTON_PX) / 2, height / 2],
       ...this.#grab?.seen, // a picture that moves would take what is dragged with it
     };
@@ -200,10 +202,10 @@ export class WorldView {
     }
     const place = this.#state.place;
     const reach = GRAB_PX / seen.scale;
-    const handle = [place.x_m + HANDLE_M * Math.cos(place.heading_rad), place.y_m + HANDLE_M * Math.sin(place.heading_rad)];
+    const [handleX, handleY] = handle(place);
     const start = { px: event.clientX, py: event.clientY, fromX: x, fromY: y, seen };
     const robot = { ...start, x: place.x_m, y: place.y_m, heading: place.heading_rad };
-    const toHandle = Math.hypot(x - handle[0], y - handle[1]);
+    const toHandle = Math.hypot(x - handleX, y - handleY);
     const toRobot = Math.hypot(x - place.x_m, y - place.y_m);
     if (toHandle < reach && toHandle < toRobot) this.#grab = { ...robot, what: "heading" };
     else if (toRobot < Math.max(0.22, reach)) this.#grab = { ...robot, what: "robot", offX: place.x_m - x, offY: place.y_m - y };
@@ -242,9 +244,20 @@ export class WorldView {
   }
 }
 
-// Returns the middle of the picture along one side of the room: the robot's place, but no more outside than a margin.
-function within(place, size, half, margin) {
-  return size + 2 * margin <= 2 * half ? size / 2 : Math.min(Math.max(place, half - margin), size + margin - half);
+function handle({ x_m: x, y_m: y, heading_rad: heading }) {
+  return [x + HANDLE_M * Math.cos(heading), y + HANDLE_M * Math.sin(heading)];
+}
+
+// Returns the middle of the picture along one side of the room: that of the room if it fits, else the robot's place
+// with no more outside than a margin. Robot and handle are always inside.
+function within([place, handle], size, halfPx, scale) {
+  const [half, margin, edge] = [halfPx, MARGIN_PX, HANDLE_PX].map((px) => px / scale);
+  const middle = size + 2 * margin <= 2 * half ? size / 2 : between(half - margin, place, size + margin - half);
+  return between(Math.max(place, handle) + edge - half, middle, Math.min(place, handle) - edge + half);
+}
+
+function between(least, value, most) {
+  return Math.min(Math.max(value, least), most);
 }
 
 function way(paint, points) {

@@ -1,4 +1,4 @@
-"""Slowly changing state of the robot, for all pages: introduction, world, lessons, situations, health, exam."""
+"""Copies of the robot's resources for all pages: introduction, world, lessons, situations, health, exam."""
 
 from collections.abc import Awaitable, Callable
 from functools import partial
@@ -32,7 +32,7 @@ Publish = Callable[[dict[str, Any], str], None]
 
 
 class CachedResource:
-    """Copy of one of the robot's slow answers, such as the lessons, fetched again for another version."""
+    """Copy of one of the robot's resources, such as the lessons, fetched again for another version."""
 
     def __init__(
         self,
@@ -68,7 +68,7 @@ class CachedResource:
             await anyio.sleep(self._pause_s)
 
 
-class SlowState:
+class CachedResources:
     """Copies of the robot's resources, each fetched again when a state shows that it has changed."""
 
     def __init__(self, robot: TeacherClient, publish: Publish, answered: Callable[[], int]) -> None:
