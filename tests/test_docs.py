@@ -73,7 +73,6 @@ LONG: dict[str, Shorten] = {
     "study paper": lambda words: [*words, "--seeds", "100"],
     "study phases": lambda words: [*words, "--seeds", "0"],
     "run": lambda words: shortened_run(words),
-    "teach": lambda words: [*words, "--page-port", "0", "--while-stdin"],
     "sim": lambda words: [*words, "--seconds", "1"],
     "doctor": lambda words: [*words, "--ticks", "5"],
 }

@@ -107,7 +107,7 @@ async def _run(options: _Options, device: Device, names: RosSettings) -> None:
 
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(serve)
-        reason = await until_teaching_ends(device, while_stdin=False, command="ros")
+        reason = await until_teaching_ends(device, command="ros")
         tasks.cancel_scope.cancel()
     if reason:
         raise UserError(reason)

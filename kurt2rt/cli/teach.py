@@ -79,10 +79,9 @@ class _Options:
     robot_settings: RobotName = None
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the scripted teacher.")] = 1
     settings: SettingsName = "default"
-    while_stdin: Annotated[
-        bool, typer.Option("--while-stdin", hidden=True, help="End with the standard input, as kurt2rt run needs it.")
+    for_run: Annotated[
+        bool, typer.Option("--for-run", hidden=True, help="Started by kurt2rt run: report the pages to it as JSON.")
     ] = False
-    pages_as_json: Annotated[bool, typer.Option("--pages-as-json", hidden=True)] = False
 
     def check(self) -> None:
         """Raise typer.BadParameter if options contradict each other."""
@@ -139,9 +138,9 @@ def teach(options: _Options) -> None:
     route = _Route(device, options.robot or device.host, options.port or device.port)
     if options.terminal:
         place = f"{route.host}:{route.port}"
-        _teach(route, lambda robot, say: TerminalTeacher(robot, sys.stdin, say, place).teach(), while_stdin=False)
+        _teach(route, lambda robot, say: TerminalTeacher(robot, sys.stdin, say, place).teach())
     elif options.auto:
-        _teach(route, partial(_by_script, route, service, options), while_stdin=options.while_stdin)
+        _teach(route, partial(_by_script, route, service, options))
     else:
         _serve(options, service, route)
 
@@ -156,8 +155,7 @@ def _serve(options: _Options, service: ServiceSettings, route: _Route | None) ->
         port=service.page_port if page_port is None else page_port,
         spare_ports=SPARE_PORTS if page_port is None else 0,
         address=options.page_address or service.page_address,
-        while_stdin=options.while_stdin,
-        as_json=options.pages_as_json,
+        as_json=options.for_run,
     )
     if route is None:
         serve_pages(service, options.port or service.port, page)
@@ -174,7 +172,7 @@ def _device(service: ServiceSettings, name: str) -> Device:
 _Print = Callable[[str], None]
 
 
-def _teach(route: _Route, teacher: Callable[[TeacherClient, _Print], Awaitable[None]], *, while_stdin: bool) -> None:
+def _teach(route: _Route, teacher: Callable[[TeacherClient, _Print], Awaitable[None]]) -> None:
     console = Console()
 
     def print_line(text: str) -> None:
@@ -187,7 +185,7 @@ def _teach(route: _Route, teacher: Callable[[TeacherClient, _Print], Awaitable[N
         ):
 
             async def until_ended() -> None:
-                reason = await until_teaching_ends(route.device, while_stdin=while_stdin)
+                reason = await until_teaching_ends(route.device)
                 if reason:
                     print_line(reason)
                 with anyio.move_on_after(1.0, shield=True):
@@ -206,8 +204,8 @@ async def _by_script(
 ) -> None:
     try:
         await client.hello()
-        # With --while-stdin, kurt2rt run has asked already whether a person's file may be used.
-        lessons = () if options.while_stdin else await client.lessons(_NEWEST_LESSONS)
+        # kurt2rt run has asked already whether a person's file may be used.
+        lessons = () if options.for_run else await client.lessons(_NEWEST_LESSONS)
     except NoAnswerError as error:
         raise no_robot(route.host, route.port, route.device.name) from error
     people = dict.fromkeys(each.teacher for each in reversed(lessons) if each.teacher not in PROGRAMS)

@@ -38,7 +38,6 @@ class PageOptions:
     """Number of ports above to try, as for `kurt2rt.teacher.page.server.listen`."""
     address: str
     """Address or name of this machine for phones; auto: its addresses in its networks."""
-    while_stdin: bool
     as_json: bool
     """Report the served pages in lines of JSON, for `kurt2rt run`."""
 
@@ -75,7 +74,7 @@ def serve_page(device: Device, host: str, port: int, options: PageOptions, publi
 
     async def end() -> None:
         nonlocal reason
-        reason = await until_teaching_ends(device, while_stdin=options.while_stdin)
+        reason = await until_teaching_ends(device)
 
     _serve(lambda: ((device,), ""), site, options, end, at_once=True)
     if reason:
@@ -100,8 +99,7 @@ def serve_pages(service: ServiceSettings, port: int, options: PageOptions) -> No
         options.address,
     )
 
-    ends = partial(until_ended, while_stdin=options.while_stdin)
-    _serve(partial(local_devices, pairings), site, options, ends, at_once=False)
+    _serve(partial(local_devices, pairings), site, options, until_ended, at_once=False)
 
 
 def _serve(

@@ -2,14 +2,13 @@
 
 import os
 import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import TracebackType
 from typing import Self
-
-from kurt2rt.service.systemd.access import start_command
 
 POLL_S = 1.0
 """Period of the checks whether children run, and first delay of a restart, in s."""
@@ -18,6 +17,8 @@ LONGEST_PAUSE_S = 30.0
 _ENDING_S = 5.0
 _LAST_LINES_S = 0.5
 """Time to read the last lines of a child that ended, in s."""
+_PROGRAM = (sys.executable, "-P", "-m", "kurt2rt.cli.with_parent")
+"""Words that start the command line. Without -P the present folder would be searched for modules."""
 
 
 @dataclass
@@ -49,25 +50,22 @@ class ChildProcesses:
 
     def __init__(
         self,
-        settings: str,
         remaining_s: Callable[[float], float] = lambda most_s: most_s,
         log: Callable[[str], None] = lambda _: None,
-        start: tuple[str, ...] | None = None,
+        start: tuple[str, ...] = _PROGRAM,
         poll_s: float = POLL_S,
     ) -> None:
         """Start no process yet.
 
         Args:
-            settings: runtime settings, as given on the command line.
             remaining_s: returns the time that is left for a wait of the given length, in s.
             log: gets a line if a child ends, from a thread.
-            start: words that start kurt2rt; None: those of this installation.
+            start: words that start kurt2rt, in a process that ends with its standard input.
             poll_s: period of the checks, and first delay of a restart, in s.
         """
         self._remaining_s = remaining_s
-        self._settings = settings
         self._log = log
-        self._program = start_command() if start is None else start
+        self._program = start
         self._poll_s = poll_s
         self._children: list[_Child] = []
         self._ends = threading.Event()
@@ -80,7 +78,7 @@ class ChildProcesses:
         return ", ".join(each.trouble for each in self._children if each.trouble)
 
     def start(self, name: str, *words: str, restarts: bool, on_line: Callable[[str], None] | None = None) -> None:
-        """Start `kurt2rt WORDS --settings FILE --while-stdin`, which ends with this process.
+        """Start `kurt2rt WORDS`, which ends with this process.
 
         Args:
             name: name of the child in the log.
@@ -91,7 +89,7 @@ class ChildProcesses:
         Raises:
             OSError: the process cannot be started.
         """
-        command = (*self._program, *words, "--settings", self._settings, "--while-stdin")
+        command = (*self._program, *words)
         process, read_line = _started(command), on_line or self._log
         reader = _read(process, read_line)
         self._children.append(
@@ -119,8 +117,7 @@ class ChildProcesses:
         processes = [each.process for each in self._children]
         for process in processes:
             assert process.stdin is not None
-            process.stdin.close()
-            process.terminate()
+            process.stdin.close()  # it ends as by SIGTERM; a second signal would cut its last acts short
         for process in processes:
             try:
                 process.wait(self._remaining_s(_ENDING_S))

@@ -101,7 +101,7 @@ class RobotProgram:
             # Not before: a reader of the line may send a signal at once.
             self._screen.print_line(f"task {self._task.name}, robot {options.bus}, knowledge {service.knowledge}{end}")
             self._context = ProcessContext(shutdown, notifier, self._liveness(), self._log)
-            self._children = stack.enter_context(ChildProcesses(options.settings, shutdown.remaining_s, self._log))
+            self._children = stack.enter_context(ChildProcesses(shutdown.remaining_s, self._log))
             self._printer = stack.enter_context(ConsoleThread(shutdown.remaining_s))
             stack.callback(self._printer.submit, self._screen.close)
             last = anyio.run(self._serve)
@@ -209,15 +209,15 @@ class RobotProgram:
             return
         given = {"--page-port": options.page_port, "--page-address": options.page_address}
         at = (str(word) for pair in given.items() if pair[1] is not None for word in pair)
+        teach = ("teach", "--for-run", "--port", port, "--settings", options.settings)
         self._log(f"teachers are listened to on UDP port {port}", "cyan")
         if options.page:
             phones = ("--phone",) if options.phones else ()
-            words = ("teach", "--pages-as-json", *phones, "--port", port, *at)
-            self._children.start("the teacher's page", *words, restarts=True, on_line=self._on_page_line)
+            self._children.start("the teacher's page", *teach, *phones, *at, restarts=True, on_line=self._on_page_line)
         if options.scripted_teacher is not None:
             settings, teacher = self._service, options.scripted_teacher
             of_robot = ("--task", settings.task, "--robot-settings", settings.robot)
-            words = ("teach", "--auto", "--port", port, *of_robot, "--teacher", teacher)
+            words = (*teach, "--auto", *of_robot, "--teacher", teacher)
             self._children.start("the scripted teacher", *words, restarts=False)
 
     def _liveness(self) -> dict[str, Callable[[], bool]]:

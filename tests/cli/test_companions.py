@@ -54,7 +54,7 @@ def births(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Births]:
 
 
 def companions(told: Told, script: str) -> ChildProcesses:
-    return ChildProcesses("default", log=told.put, start=(sys.executable, "-c", script), poll_s=LOOK_S)
+    return ChildProcesses(log=told.put, start=(sys.executable, "-c", script), poll_s=LOOK_S)
 
 
 def is_there(process: int) -> bool:
@@ -106,7 +106,7 @@ def test_child_process_imports_nothing_from_the_present_folder(tmp_path: Path, m
     (tmp_path / "kurt2rt" / "__init__.py").write_text("raise SystemExit(7)", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     told = Told()
-    with ChildProcesses("default", log=told.put, poll_s=LOOK_S) as children:
-        children.start("pairing", "pair", restarts=True)  # which does not know all these words, and starts soonest
-        assert "--while-stdin" in told.next()
+    with ChildProcesses(log=told.put, poll_s=LOOK_S) as children:
+        children.start("pairing", "pair", restarts=True)  # which wants a name, and starts soonest
+        assert "whose device?" in told.next()
         assert "code 2" in told.next()

@@ -19,7 +19,7 @@ _NOHUP = (
     [
         (("run", "--port", "0", "--no-record"), "RLAs |"),
         (("sim", "--bus", "shared:ignored-signals"), "switches it off"),
-        (("teach", "--pages-as-json", "--port", "1", "--page-port", "0"), "http"),
+        (("teach", "--for-run", "--port", "1", "--page-port", "0"), "http"),
     ],
     ids=["run", "sim", "teach"],
 )
