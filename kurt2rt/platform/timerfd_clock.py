@@ -4,7 +4,6 @@ import asyncio
 import ctypes
 import os
 import time
-from types import TracebackType
 from typing import Self
 
 _TFD_TIMER_ABSTIME = 1
@@ -41,9 +40,7 @@ class TimerfdClock:
         self._loop.add_reader(self._fd, self._on_readable)
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         assert self._loop is not None
         self._loop.remove_reader(self._fd)
         os.close(self._fd)

@@ -3,7 +3,6 @@
 import queue
 import threading
 from collections.abc import Callable
-from types import TracebackType
 from typing import Self
 
 _CAPACITY = 200
@@ -34,9 +33,7 @@ class ConsoleThread:
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         try:
             self._jobs.put(None, timeout=self._remaining_s(_LAST_LINES_S))
         except queue.Full:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from kurt2rt.channel.protocol.simulation import EXAM, NO_EXAM, ExamStatus
@@ -81,9 +80,7 @@ class LiveExam:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def _read(self, process: "subprocess.Popen[bytes]", knowledge: Path, picture: Path) -> None:

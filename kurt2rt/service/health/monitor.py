@@ -288,9 +288,7 @@ class DiskMonitor:
             thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._ending.set()  # not joined: a disk that hangs would hang the end
 
     def _run(self, of: str) -> None:

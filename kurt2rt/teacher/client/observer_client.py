@@ -9,7 +9,6 @@ import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import AsyncExitStack
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from kurt2rt.channel.protocol import requests
@@ -74,9 +73,7 @@ class ObserverClient:
         self._connection, self.name = connection, connection.name
         return self
 
-    async def __aexit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    async def __aexit__(self, *_: object) -> None:
         """End a press with a stop, then close."""
         # The error of the block is not passed on to the task group, which would wrap it in an ExceptionGroup.
         await self._stack.__aexit__(None, None, None)

@@ -8,7 +8,6 @@ import tempfile
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from kurt2rt.channel.protocol.schema import ChannelError
@@ -114,9 +113,7 @@ class RobotProcess:
         """Start the process, as `start` does."""
         return self.start()
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """End the process, as `end` does."""
         self.end()
 
