@@ -44,7 +44,18 @@ _PANELS = {
 module of kurt2rt.cli. The first line of its help stands here as well."""
 
 _OPTION_PANELS = {
-    "Robot and world": ("bus", "robot_settings", "settings", "task", "world", "behaviour", "seed", "seeds", "seconds"),
+    "Robot and world": (
+        "bus",
+        "robots",
+        "robot_settings",
+        "settings",
+        "task",
+        "world",
+        "behaviour",
+        "seed",
+        "seeds",
+        "seconds",
+    ),
     "Teaching": ("teacher", "auto", "knowledge", "terminal", "paper_defaults", "changes"),
     "Page and network": (
         "page",

@@ -9,7 +9,16 @@ import typer
 from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.options import Changes, PaperDefaults, RobotName, Seed, TaskOfTheFile, changes_of, world_option
+from kurt2rt.cli.options import (
+    Changes,
+    PaperDefaults,
+    RobotName,
+    Seed,
+    TaskOfTheFile,
+    changes_of,
+    refuse_if,
+    world_option,
+)
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_robot import require_robot_of
@@ -23,7 +32,9 @@ from kurt2rt.platform.text_table import print_whole
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt train or kurt2rt run leaves it.")]
+    knowledge: Annotated[
+        list[Path], typer.Argument(help="Knowledge files, as kurt2rt train or kurt2rt run leaves them.")
+    ]
     task: TaskOfTheFile = None
     paper_defaults: PaperDefaults = False
     changes: Changes = None
@@ -59,17 +70,24 @@ def exam(options: _Options) -> None:
 
         kurt2rt exam results/demo/wall_following-1.knowledge
         kurt2rt exam mine.knowledge --world b --world rooms-200
+        kurt2rt exam var/class/robot-*/*.knowledge
     """
-    task_name = options.task or task_of_file(options.knowledge)
+    refuse_if(options.as_json and len(options.knowledge) > 1, "as JSON, one knowledge file at a time", "--json")
+    for knowledge in options.knowledge:
+        _exam(options, knowledge)
+
+
+def _exam(options: _Options, knowledge: Path) -> None:
+    task_name = options.task or task_of_file(knowledge)
     settings = load_robot_of(options.robot_settings, task_name)
     other = changes_of(options.changes)
     taught = load_task(task_name, paper_defaults=options.paper_defaults, changes=other)
     require_robot_of(taught, task_name, settings)
     if options.task is not None:
-        task_of_file(options.knowledge, options.task)
+        task_of_file(knowledge, options.task)
     with job_bars() as report:
         results = examine_file(
-            options.knowledge,
+            knowledge,
             settings,
             taught,
             options.seed,
@@ -78,6 +96,7 @@ def exam(options: _Options) -> None:
             broken=options.broken,
         )
     if options.as_json:
-        print_json({"knowledge": options.knowledge, "seed": options.seed, **exams_as_data(results, taught)})
+        print_json({"knowledge": knowledge, "seed": options.seed, **exams_as_data(results, taught)})
     else:
-        print_whole(console_of(), *map(as_rich, exam_tables(results, taught)))
+        name = [f"\n{knowledge}"] if len(options.knowledge) > 1 else []
+        print_whole(console_of(), *name, *map(as_rich, exam_tables(results, taught)))

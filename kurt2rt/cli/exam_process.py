@@ -6,13 +6,12 @@ Prints the exam's standing as lines of JSON (kurt2rt.channel.protocol.exam_statu
 import json
 import os
 import sys
-import threading
 from pathlib import Path
 
-from config.errors import ExitCode
 from config.settings import SettingsError
 from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.simulation import EXAM, ExamStatus, WorldVerdict
+from kurt2rt.cli.with_parent import end_with_parent
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.drawing import draw_exams
 from kurt2rt.experiments.lockstep.drive_row import label_of
@@ -34,7 +33,7 @@ def main(arguments: list[str]) -> None:
     """
     knowledge, picture, robot_name, task_name, seed = arguments
     os.nice(NICENESS)
-    threading.Thread(target=_end_with_input, daemon=True).start()
+    end_with_parent()  # without the robot's program no process reads the verdict
     try:
         _examine(Path(knowledge), Path(picture), robot_name, task_name, int(seed))
     except (KnowledgeError, SettingsError, OSError) as error:
@@ -69,13 +68,6 @@ def _examine(knowledge: Path, picture: Path, robot_name: str, task_name: str, se
 
 def _tell(standing: ExamStatus) -> None:
     print(json.dumps(EXAM.plain_of(standing)), flush=True)
-
-
-def _end_with_input() -> None:
-    # The robot's program is gone: no process reads the verdict.
-    while os.read(0, 1024):
-        continue
-    os._exit(ExitCode.DONE)
 
 
 if __name__ == "__main__":

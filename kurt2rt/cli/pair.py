@@ -14,7 +14,7 @@ from kurt2rt.cli.json_output import plain, print_json
 from kurt2rt.cli.options import PageAddressName, SettingsName, refuse_if
 from kurt2rt.cli.qr_code import print_code
 from kurt2rt.cli.tables import console_of
-from kurt2rt.platform.text_table import TextTable, print_whole
+from kurt2rt.platform.text_table import TextTable, print_lines, print_whole
 from kurt2rt.service.settings import load_service
 from kurt2rt.teacher.page.own_addresses import NO_ADDRESS
 from kurt2rt.teacher.page.served_pages import PageAddress, page_addresses
@@ -76,7 +76,7 @@ def pair(
         raise typer.BadParameter("whose device? Give it a name, such as anna-phone", param_hint="NAME")
     elif revoke:
         pairing.revoke(*pairings, name)
-        _print(Console(), f"{name} is paired no longer")
+        print_lines(Console(), f"{name} is paired no longer")
     else:
         change = pairing.renew if renew else pairing.pair
         changed = change(*pairings, name, port=service.port)
@@ -94,18 +94,19 @@ def _list(pairings: PairingFolders, *, as_json: bool) -> None:
 
 def _show(name: str, changed: Pairing, addresses: Sequence[PageAddress]) -> None:
     console = Console()
-    _print(
+    print_lines(
         console,
         f"{name} is paired",
         f"robot's side   {changed.teacher}",
         f"device's side  {changed.device.folder}",
         "next           kurt2rt run --phone, unless it runs already; then scan the code that it shows",
         *(f"its page       {each.link}" for each in addresses),
+        whole=True,
     )
     if addresses:
         print_code(console, addresses[0].link)
     else:
-        _print(console, f"! {NO_ADDRESS}")
+        print_lines(console, f"! {NO_ADDRESS}")
 
 
 def _table(teachers: Path, devices: Path) -> TextTable | Text:
@@ -123,7 +124,3 @@ def _where(name: str, devices: Path) -> str:
     if name in OF_THIS_MACHINE:
         return "this machine's own"
     return "here" if (devices / name).is_dir() else "moved away"
-
-
-def _print(console: Console, *lines: str) -> None:
-    console.print(*lines, sep="\n", markup=False, highlight=False, soft_wrap=True)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,6 +16,7 @@ from kurt2rt.channel.security.pairing import Device, read_device
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import RobotAddress, RobotPort, SettingsName
 from kurt2rt.cli.teach_shutdown import until_teaching_ends
+from kurt2rt.platform.text_table import print_lines
 from kurt2rt.ros.settings import Naming, RosSettings, is_ros_name
 from kurt2rt.service.settings import load_service
 from kurt2rt.teacher.client.client import TeacherClient
@@ -89,11 +91,8 @@ async def _run(options: _Options, device: Device, names: RosSettings) -> None:
     from kurt2rt.ros.port import RosConnectionError
     from kurt2rt.teacher.ros.device import RosDevice
 
-    console = Console()
+    say = partial(print_lines, Console())
     reason = ""
-
-    def say(text: str) -> None:
-        console.print(text, markup=False, highlight=False, soft_wrap=not console.is_terminal)
 
     async def serve() -> None:
         session = await _open_session(options, names, say)

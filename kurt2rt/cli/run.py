@@ -22,12 +22,15 @@ from kurt2rt.platform.extras import extra_for
 from kurt2rt.service.bus_names import SIMULATED
 
 if TYPE_CHECKING:
+    from hal.robot_settings import RobotSettings
     from kurt2rt.core.task_settings import TaskSettings
     from kurt2rt.service.program import RobotProgram
     from kurt2rt.service.run_options import RunOptions
     from kurt2rt.service.settings import ServiceSettings
 
 _CHANNEL, _NO_TEACHER = "channel", "none"
+_OF_ONE = ("bus", "behaviour", "teacher", "auto", "knowledge", "port", "page_port", "can_log", "record", "live_view")
+"""Options of one robot, which --robots refuses."""
 _NOT_RECORDED = (
     "the run is not recorded without foxglove-sdk; pip install '.[recording]' in kurt2rt's folder, or give --no-record"
 )
@@ -43,6 +46,16 @@ class _Options:
             "in this program."
         ),
     ] = SIMULATED
+    robots: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=2,
+            max=8,
+            help="Run N simulated robots for a class, each with a page, a code to scan and knowledge of its own, in "
+            "var/class.",
+        ),
+    ] = None
     robot_settings: RobotName = None
     settings: SettingsName = "default"
     task: Annotated[
@@ -186,6 +199,9 @@ def run(options: _Options) -> None:
         kurt2rt run --teacher none --task streets --behaviour turn_left
     """
     _require_consistent(options)
+    if options.robots is not None:
+        _run_robots(options, options.robots)
+        return
     with end_at_interrupt():
         import kurt2rt.service.program
         import kurt2rt.teacher.scripted.channel_teacher  # noqa: F401  # loads all that the program needs
@@ -231,24 +247,35 @@ def _require_consistent(options: _Options) -> None:
         "--no-record",
     )
     refuse_if(
-        options.service and (options.auto or options.teacher == _NO_TEACHER),
+        options.service and (options.auto or options.robots is not None or options.teacher == _NO_TEACHER),
         "after each start it waits for a person who says Go",
         "--service",
     )
 
 
+def _run_robots(options: _Options, count: int) -> None:
+    """Run several robots. Raises typer.BadParameter for an option that robots cannot share, such as --port."""
+    given = ", ".join(
+        f"--{name.replace('_', '-')}" for name in _OF_ONE if getattr(options, name) != getattr(_Options(), name)
+    )
+    refuse_if(bool(given), "each robot of --robots is simulated, for people, with ports and files of its own", given)
+    with end_at_interrupt():
+        from rich.console import Console
+
+        from kurt2rt.cli.robots import class_robots, run_robots
+    robots = class_robots(count, _checked(options, options.task)[0])
+    words = ("--seed", str(options.seed), *(["--no-record"] if options.no_record else []))
+    run_robots(robots, words, Console(), browser=not options.no_open, seconds=options.seconds)
+
+
 def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     from rich.console import Console
 
-    from hal.robot_settings import load_robot
     from kurt2rt.cli.scripted_file import require_agreement
     from kurt2rt.cli.terminal_screen import TerminalScreen
-    from kurt2rt.core.task_robot import require_robot_of
-    from kurt2rt.core.task_settings import load_task
     from kurt2rt.service.program import RobotProgram
     from kurt2rt.service.settings import load_service
     from kurt2rt.teacher.scripted.channel_teacher import mid_level_refusal
-    from simbridge.contracts.robot_kind import simulations_of
 
     live_view = _live_view(options.live_view)
     task = options.task
@@ -257,14 +284,9 @@ def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
         task = _task_of(options.knowledge, task, load_service(options.settings).task)
     if options.auto and options.knowledge is not None:
         require_agreement(options.knowledge)
-    settings = _changed(options, task)
-    taught, robot = load_task(settings.task), load_robot(settings.robot)
-    require_robot_of(taught, settings.task, robot)
+    settings, taught, robot = _checked(options, task)
     if options.auto and taught.mid is not None:
         raise typer.BadParameter(mid_level_refusal(taught), param_hint="--auto")
-    _require_behaviour(taught, options.behaviour)
-    if options.world is not None and options.bus == SIMULATED:
-        simulations_of(robot).require_worlds(options.world)  # before the line that says what runs
     run_options = _run_options(options, live_view, recorded=recorded)
     screen = TerminalScreen(
         Console(),
@@ -276,6 +298,25 @@ def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     if run_options.unrecorded:
         screen.print_line(run_options.unrecorded, "yellow")
     return RobotProgram(run_options, settings, robot, taught, screen)
+
+
+def _checked(options: _Options, task: str | None) -> "tuple[ServiceSettings, TaskSettings, RobotSettings]":
+    """Return the settings with the command line applied to them, task and robot, as they fit each other.
+
+    Raises SettingsError, or typer.BadParameter for an unknown behaviour.
+    """
+    from hal.robot_settings import load_robot
+    from kurt2rt.core.task_robot import require_robot_of
+    from kurt2rt.core.task_settings import load_task
+    from simbridge.contracts.robot_kind import simulations_of
+
+    settings = _changed(options, task)
+    taught, robot = load_task(settings.task), load_robot(settings.robot)
+    require_robot_of(taught, settings.task, robot)
+    _require_behaviour(taught, options.behaviour)
+    if options.world is not None and options.bus == SIMULATED:
+        simulations_of(robot).require_worlds(options.world)  # before the line that says what runs
+    return settings, taught, robot
 
 
 def _run_options(options: _Options, live_view: tuple[str, int] | None, *, recorded: bool) -> "RunOptions":
@@ -293,7 +334,6 @@ def _run_options(options: _Options, live_view: tuple[str, int] | None, *, record
         phones=options.phone,
         scripted_teacher=_scripted_teacher(options),
         page_port=options.page_port,
-        page_address=options.page_address,
         can_log=options.can_log,
         record=recorded,
         unrecorded="" if recorded or options.no_record else _NOT_RECORDED,
@@ -369,5 +409,5 @@ def _changed(options: _Options, task: str | None) -> "ServiceSettings":
         settings = settings.model_copy(update={"knowledge": str(own_file(Path(settings.knowledge)))})
     files = {"knowledge": options.knowledge, "recordings": options.record}
     given: dict[str, object] = {key: None if path is None else str(path) for key, path in files.items()}
-    given |= {"world": options.world, "port": options.port}
+    given |= {"world": options.world, "port": options.port, "page_address": options.page_address}
     return settings.model_copy(update={key: value for key, value in given.items() if value is not None})

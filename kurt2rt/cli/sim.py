@@ -17,6 +17,7 @@ from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import RobotName, refuse_if, require_finite, world_option
 from kurt2rt.platform.signal_handlers import SignalHandlers
 from kurt2rt.platform.switch_interval import short_switch_interval
+from kurt2rt.platform.text_table import print_lines
 from kurt2rt.service.console_thread import ConsoleThread
 from simbridge.contracts.robot_kind import kind_of
 
@@ -110,9 +111,7 @@ def _simulate(options: _Options, settings: RobotSettings) -> None:
         printer = stack.enter_context(ConsoleThread())
 
         def log(text: str) -> None:
-            printer.submit(
-                lambda: console.print(text, markup=False, highlight=False, soft_wrap=not console.is_terminal)
-            )
+            printer.submit(lambda: print_lines(console, text))
 
         robot_end = cast("RobotEnd", kind_of(settings).serve(settings, options.bus))
         standalone = StandaloneRobot(

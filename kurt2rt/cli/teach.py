@@ -30,6 +30,7 @@ from kurt2rt.cli.scripted_file import people_agree
 from kurt2rt.cli.teach_shutdown import until_teaching_ends
 from kurt2rt.core.rla.rla import AUTO, PROGRAMS
 from kurt2rt.core.task_settings import load_task, taught_by_named
+from kurt2rt.platform.text_table import print_lines
 from kurt2rt.service.settings import ServiceSettings, load_service
 from kurt2rt.teacher.client.answer import NoAnswerError, no_robot
 from kurt2rt.teacher.client.client import TeacherClient
@@ -173,10 +174,7 @@ _Print = Callable[[str], None]
 
 
 def _teach(route: _Route, teacher: Callable[[TeacherClient, _Print], Awaitable[None]]) -> None:
-    console = Console()
-
-    def print_line(text: str) -> None:
-        console.print(text, markup=False, highlight=False, soft_wrap=not console.is_terminal)
+    print_line = partial(print_lines, Console())
 
     async def run() -> None:
         async with (

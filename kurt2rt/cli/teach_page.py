@@ -13,6 +13,7 @@ from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, Device, Pai
 from kurt2rt.cli.live_screen import PAIR_A_PHONE
 from kurt2rt.cli.qr_code import print_code
 from kurt2rt.cli.teach_shutdown import until_ended, until_teaching_ends
+from kurt2rt.platform.text_table import print_lines
 from kurt2rt.service.settings import ServiceSettings
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.device_pages import PageSite
@@ -117,15 +118,10 @@ def _print_json(served: ServedPages) -> None:
 def _printer(console: Console, robot_place: str) -> Callable[[ServedPages], None]:
     def print_pages(served: ServedPages) -> None:
         for each in served.addresses:
-            _print(console, f"page for {each.device}, robot at {robot_place}; Ctrl-C ends", each.link)
+            print_lines(console, f"page for {each.device}, robot at {robot_place}; Ctrl-C ends", each.link, whole=True)
         phones = [each for each in served.addresses if each.device not in OF_THIS_MACHINE]
         if phones and console.is_terminal:
             print_code(console, phones[0].link)
-        _print(console, *([] if served.network else [PAIR_A_PHONE]), *([served.trouble] if served.trouble else []))
+        print_lines(console, *([] if served.network else [PAIR_A_PHONE]), *([served.trouble] if served.trouble else []))
 
     return print_pages
-
-
-def _print(console: Console, *lines: str) -> None:
-    if lines:
-        console.print(*lines, sep="\n", markup=False, highlight=False, soft_wrap=True)

@@ -13,6 +13,7 @@ from rich.console import Console
 
 from hal.health import Health
 from kurt2rt.cli.live_screen import LiveScreen
+from kurt2rt.platform.text_table import print_lines
 from kurt2rt.service.health.snapshot import format_activity
 from kurt2rt.service.post_tick import ProgramStatus
 from kurt2rt.service.status_line import (
@@ -72,9 +73,7 @@ class TerminalScreen:
             self._live.print(text, style)
             return
         level = _LEVELS.get(style or "", "") if self._to_journal else ""
-        self._console.print(
-            f"{level}{text}", style=style, markup=False, highlight=False, soft_wrap=not self._console.is_terminal
-        )
+        print_lines(self._console, f"{level}{text}", style=style)
 
     def lesson_saved(self, text: str) -> None:
         """Print the text of a durable lesson, on a live terminal only."""
@@ -154,14 +153,25 @@ def open_link(link: str, folder: Path) -> bool:
     The link carries the token, and all users can read a program's arguments: it is passed in a file in `folder` that
     only this user can read. Raises OSError if the file cannot be written.
     """
+    file = folder / _FILE
+    write_private(
+        file, f'<!doctype html><meta http-equiv="refresh" content="0;url={escape(link)}"><title>kurt2rt</title>'
+    )
+    return open_file(file)
+
+
+def write_private(file: Path, content: str) -> None:
+    """Write a text file that only this user can read, instead of the one before. Raises OSError."""
+    file.unlink(missing_ok=True)
+    with os.fdopen(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf-8") as opened:
+        opened.write(content)
+
+
+def open_file(file: Path) -> bool:
+    """Start to open a file in the desktop's browser; return False if no program for that is installed."""
     opener = next((path for path in map(shutil.which, _OPENERS) if path is not None), None)
     if opener is None:
         return False
-    file = folder / _FILE
-    file.unlink(missing_ok=True)
-    content = f'<!doctype html><meta http-equiv="refresh" content="0;url={escape(link)}"><title>kurt2rt</title>'
-    with os.fdopen(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf-8") as opened:
-        opened.write(content)
     words = (opener, "open", file.absolute().as_uri()) if opener.endswith("gio") else (opener, file.absolute().as_uri())
     # The thread waits for the process, which would otherwise stay a zombie.
     threading.Thread(target=_run, args=(words,), name="browser", daemon=True).start()

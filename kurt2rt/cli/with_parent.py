@@ -7,13 +7,17 @@ import threading
 from kurt2rt.cli.main import main
 
 
-def _end_with_parent() -> None:
-    """Read standard input until the parent process closes it, then end this process as SIGTERM does."""
-    while os.read(0, 1024):
-        continue
-    os.kill(os.getpid(), signal.SIGTERM)
+def end_with_parent() -> None:
+    """Start a thread that waits until the parent process closes standard input, then ends this process by SIGTERM."""
+
+    def read() -> None:
+        while os.read(0, 1024):
+            continue
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    threading.Thread(target=read, name="parent", daemon=True).start()
 
 
 if __name__ == "__main__":
-    threading.Thread(target=_end_with_parent, name="parent", daemon=True).start()
+    end_with_parent()
     main()

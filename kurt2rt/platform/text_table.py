@@ -143,6 +143,12 @@ def wrapped(text: Text, width: int) -> list[Text]:
     return lines
 
 
+def print_lines(console: Console, *lines: str, style: str | None = None, whole: bool = False) -> None:
+    """Print lines without markup, in no colour but that of `style`; a terminal breaks those that are not `whole`."""
+    for line in lines:
+        console.print(line, style=style, markup=False, highlight=False, soft_wrap=whole or not console.is_terminal)
+
+
 def print_whole(console: Console, *parts: RenderableType) -> None:
     """Print tables and paragraphs without breaking a word; an empty line parts a table from what is above and below it.
 

@@ -28,15 +28,18 @@ class _Child:
     command: tuple[str, ...]
     restarts: bool
     """True if it is started again if it ends."""
-    process: "subprocess.Popen[bytes]"
-    started_s: float
     pause_s: float
     on_line: Callable[[str], None]
     """Gets each line that it prints, from a thread."""
-    reader: threading.Thread
     restart_at_s: float | None = None
     """Time of the next restart, monotonic s; None while it runs, or if it is not restarted."""
     trouble: str = ""
+
+    def start(self) -> None:
+        """Start the process, and the thread that reads its lines. Raises OSError."""
+        self.process = _started(self.command)
+        self.reader = _read(self.process, self.on_line)
+        self.started_s, self.restart_at_s, self.trouble = time.monotonic(), None, ""
 
 
 class ChildProcesses:
@@ -88,21 +91,9 @@ class ChildProcesses:
         Raises:
             OSError: the process cannot be started.
         """
-        command = (*self._program, *words)
-        process, read_line = _started(command), on_line or self._log
-        reader = _read(process, read_line)
-        self._children.append(
-            _Child(
-                name=name,
-                command=command,
-                restarts=restarts,
-                process=process,
-                started_s=time.monotonic(),
-                pause_s=self._poll_s,
-                on_line=read_line,
-                reader=reader,
-            )
-        )
+        child = _Child(name, (*self._program, *words), restarts, self._poll_s, on_line or self._log)
+        child.start()
+        self._children.append(child)
 
     def __enter__(self) -> Self:
         self._looking.start()
@@ -151,14 +142,11 @@ class ChildProcesses:
         assert child.process.stdin is not None
         child.process.stdin.close()
         try:
-            child.process = _started(child.command)
+            child.start()
         except OSError as error:
             child.trouble = f"{child.name} cannot be started ({error}); kurt2rt has to be installed whole"
             child.restart_at_s = now_s + LONGEST_PAUSE_S
             self._log(child.trouble)
-        else:
-            child.reader = _read(child.process, child.on_line)
-            child.started_s, child.restart_at_s, child.trouble = now_s, None, ""
 
 
 def _started(command: tuple[str, ...]) -> "subprocess.Popen[bytes]":

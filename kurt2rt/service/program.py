@@ -174,6 +174,7 @@ class RobotProgram:
 
     def _serve_options(self, opened: OpenedRobot, knowledge: OpenedKnowledge | None) -> ServeOptions:
         options, run = self._options, None
+        measure = None if opened.simulation is None else self._measure(opened.simulation)
         if opened.simulated_world is not None:
             self._simulated = self._simulated or self._simulated_runs(opened)
             run = self._simulated.present
@@ -184,7 +185,7 @@ class RobotProgram:
             exam=self._exam(opened),
             run_control=self._simulated,
             held_world=opened.held_world,
-            measure=None if opened.simulation is None else self._measure(opened.simulation),
+            measure=measure,
             first_commands=() if run is None else run.first_commands,
         )
         goes_on = run is not None and run.teacher is not None
@@ -194,7 +195,7 @@ class RobotProgram:
             duration_s=left_s if math.isfinite(left_s) else None,
             stopped=options.stopped or goes_on,
             behaviour="" if goes_on else options.behaviour,
-            probes=self._probes(opened),
+            probes=self._probes(opened, measure),
             context=self._context,
             knowledge=knowledge,
             recording=self._recording(opened),
@@ -207,13 +208,15 @@ class RobotProgram:
         self._service = self._service.model_copy(update={"port": channel.endpoint.port})
         if self._simulated is not None and self._simulated.present.teacher is not None:
             return
-        given = {"--page-port": options.page_port, "--page-address": options.page_address}
-        at = (str(word) for pair in given.items() if pair[1] is not None for word in pair)
+        at = () if options.page_port is None else ("--page-port", str(options.page_port))
         teach = ("teach", "--for-run", "--port", port, "--settings", options.settings)
         self._log(f"teachers are listened to on UDP port {port}", "cyan")
         if options.page:
             phones = ("--phone",) if options.phones else ()
-            self._children.start("the teacher's page", *teach, *phones, *at, restarts=True, on_line=self._on_page_line)
+            named = ("--page-address", self._service.page_address)
+            self._children.start(
+                "the teacher's page", *teach, *phones, *at, *named, restarts=True, on_line=self._on_page_line
+            )
         if options.scripted_teacher is not None:
             settings, teacher = self._service, options.scripted_teacher
             of_robot = ("--task", settings.task, "--robot-settings", settings.robot)
@@ -232,14 +235,15 @@ class RobotProgram:
         watchdog = None if self._opened is None else self._opened.robot.watchdog.thread
         return (self._context.shutdown.thread, *(() if watchdog is None else (watchdog,)))
 
-    def _probes(self, opened: OpenedRobot) -> Probes:
+    def _probes(self, opened: OpenedRobot, measure: "LiveMeasure | None") -> Probes:
         log = self._can_log
         drops = {"lines for the terminal": lambda: self._printer.dropped}
         errors = {"companions": lambda: self._children.trouble, "recording": lambda: self._options.unrecorded}
         if log is not None:
             drops["frames for the CAN log"], errors["CAN log"] = lambda: log.lost, lambda: log.trouble
         folders = {"recordings": Path(self._service.recordings)} if self._options.record else {}
-        return Probes(lambda: opened.robot.health, drops, errors, folders, lambda: self._screen.links)
+        reached = str if measure is None else lambda: f"{measure.progress:.1f} {measure.unit}"
+        return Probes(lambda: opened.robot.health, drops, errors, folders, lambda: self._screen.links, reached)
 
     def _exam(self, opened: OpenedRobot) -> LiveExam | None:
         runs = self._simulated

@@ -32,8 +32,6 @@ class RunOptions:
     """Name or path of the scripted teacher to start; None: none."""
     page_port: int | None = None
     """TCP port of the page; None: as the settings say."""
-    page_address: str | None = None
-    """Address of the page for phones; None: as the settings say."""
     can_log: Path | None = None
     """New file for all frames; None: frames are not logged."""
     record: bool = True

@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field, WrapSerializer
 
 from kurt2rt.channel.protocol.schema import Codec
 from kurt2rt.channel.protocol.trouble_code import TroubleCode, numbers_of, trouble_text
-from kurt2rt.core.message_fields import Line, Number, Share, Text, Time, Title, Truth, UpTo
+from kurt2rt.core.message_fields import Int, Line, Number, Share, Text, Time, Title, Truth, UpTo, Word
 from kurt2rt.core.progress_meter import NO_PROGRESS, Progress
 
 MOST_ROWS = 16
@@ -191,6 +191,11 @@ class HealthReport:
     """Links to the teacher's page with their tokens, for this machine's user only, never over the channel."""
     progress: Progress = NO_PROGRESS
     """Progress of teaching in the last minute."""
+    phase: Annotated[int, Int(1, 5)] = 1
+    teacher: Word | None = None
+    """Present teacher; None without teacher."""
+    reached: Title = ""
+    """Progress of a simulated robot with its task, such as `1.5 laps`; empty if it is not measured."""
     plugins: Annotated[tuple[Line, ...], UpTo(MOST_ROWS)] = ()
     """Plug-ins in use from outside of the project, each with its package and version, or file, and its hash."""
 

@@ -21,9 +21,11 @@ class HealthRow(NamedTuple):
 def rows_of(report: HealthReport) -> tuple[HealthRow, ...]:
     """Return one row (name, text, level) per subject of the report, in the order of the screens."""
     late, bus = report.punctuality, report.bus
+    reached = f", {report.reached} so far" if report.reached else ""
     lately = f", {late.missed_lately} of them in the last minute" if late.missed_lately else ""
     rows = [
         ("does", report.doing),
+        ("teacher", f"{report.teacher or 'none'}, phase {report.phase}{reached}"),
         (
             "lateness",
             f"now {late.newest_ms:.2f} ms; in a minute: median {late.median_ms:.2f}, p99 {late.p99_ms:.2f}, "

@@ -21,6 +21,8 @@ class Probes:
     """Folders that need free space, by the name of their content."""
     pages: Callable[[], tuple[str, ...]] = tuple
     """Returns the links to the teacher's page, with their tokens; empty if no page is served."""
+    reached: Callable[[], str] = str
+    """Returns the progress of a simulated robot with its task, such as `1.5 laps`; empty if it is not measured."""
 
     def with_more(
         self,

@@ -37,6 +37,11 @@ class Snapshot:
     doing: str
     progress: Progress = NO_PROGRESS
     broken_sensors: tuple[BrokenSensor, ...] = ()
+    phase: int = 1
+    teacher: str | None = None
+    """Present teacher; None without teacher."""
+    reached: str = ""
+    """Progress of a simulated robot with its task; empty if it is not measured."""
 
 
 def take_snapshot(
@@ -71,6 +76,9 @@ def take_snapshot(
         progress=runtime.progress.progress(),
         doing=format_activity(record),
         broken_sensors=record.broken_sensors,
+        phase=int(runtime.handler.phase),
+        teacher=runtime.handler.authority.teacher,
+        reached=instruments.reached(),
     )
 
 

@@ -37,8 +37,8 @@ class Access:
         self.public = public
         self._token = token.encode()
         self._names = frozenset(name.lower() for name in names)
-        # A cookie holds for all ports: the pages of two devices on one machine need two names.
-        self.cookie_name = f"kurt2rt-{device}"
+        # A cookie holds for all ports: the pages of two devices, or of two robots, on one machine need two names.
+        self.cookie_name = f"kurt2rt-{device}-{hashlib.sha256(self._token).hexdigest()[:8]}"
         self.cookie = hmac.new(self._token, b"kurt2rt page", hashlib.sha256).hexdigest()
 
     def accepts_token(self, token: str) -> bool:
