@@ -54,7 +54,7 @@ def main() -> None:
     try:
         with end_at_interrupt():
             commands = command_line(typed())
-        sys.exit(commands(standalone_mode=False))
+        sys.exit(commands(prog_name="kurt2rt", standalone_mode=False))
     except KeyboardInterrupt:
         sys.exit(ExitCode.INTERRUPTED)
     except ModuleNotFoundError as error:

@@ -35,8 +35,6 @@ class CommandLine:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
         monkeypatch.delenv("COLUMNS", raising=False)  # as in a pipe: as wide as it takes
-        # Click names the program after the package that `python -m` runs: `python -m pytest` would be its name.
-        monkeypatch.setattr(sys.modules["__main__"], "__package__", None, raising=False)
         self._monkeypatch = monkeypatch
         self._capfd = capfd
 
