@@ -13,9 +13,15 @@ from kurt2rt.channel.protocol.simulation import EXAM, NO_EXAM, ExamStatus
 from kurt2rt.core.message_fields import WireError
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.platform.durable_files import write_durably
 
 Command = Callable[[Path, Path], Sequence[str]]
 """Returns the words that start an exam of a knowledge file, with the path of its picture."""
+
+
+def verdict_file(knowledge: Path) -> Path:
+    """Return the file of the newest verdict on a knowledge file, which keeps it if renamed. Raises OSError."""
+    return knowledge.with_name("exams") / f"verdict-{knowledge.stat().st_ino}.json"
 
 
 class LiveExam:
@@ -24,23 +30,27 @@ class LiveExam:
     A thread reads the status that the process prints as lines of JSON (`exam_status.EXAM`).
     """
 
-    def __init__(self, command: Command, status: ExamStatus = NO_EXAM, picture: Path | None = None) -> None:
+    def __init__(self, command: Command, taught: Path) -> None:
         """Start with the verdict of an earlier run on the same knowledge file.
 
         Args:
             command: its process ends by itself as soon as its standard input does.
-            status: newest exam of the knowledge file.
-            picture: its picture; None without one.
+            taught: knowledge file, which may be made later.
         """
         self._command = command
         self._process: subprocess.Popen[bytes] | None = None
         self._reading: threading.Thread | None = None
         self._lock = threading.Lock()
         self._closed = False
-        self.status = status
+        self._taught = taught
+        self.status = NO_EXAM
         """Status, replaced by the thread that reads."""
-        self.picture = picture
+        self.picture: Path | None = None
         """Picture of the newest exam, drawn once it has a verdict; None before the first exam."""
+        with suppress(OSError, WireError, ValueError):
+            verdict = verdict_file(taught)
+            self.status = EXAM.read(json.loads(verdict.read_text(encoding="utf-8")))
+            self.picture = verdict.with_name(self.status.picture)
 
     def begin(self, knowledge: Path, picture: Path) -> None:
         """Start an exam of a copy of the knowledge, deleted at the end; `picture` is the file to draw.
@@ -107,4 +117,7 @@ class LiveExam:
         elif verdict.trouble:
             self.status = verdict
         else:
-            self.status = replace(verdict, picture=picture.name if picture.is_file() else "")
+            verdict = replace(verdict, picture=picture.name if picture.is_file() else "")
+            with suppress(OSError):  # it is told all the same
+                write_durably(verdict_file(self._taught), json.dumps(EXAM.plain_of(verdict)))
+            self.status = verdict

@@ -255,14 +255,7 @@ class RobotProgram:
             # Without -P the present folder would be searched for modules.
             return (sys.executable, "-P", "-m", "kurt2rt.cli.exam_process", str(knowledge), str(picture), *words)
 
-        knowledge = runs.present.knowledge
-        exam = LiveExam(command, *runs.verdicts.get(knowledge, ()))
-
-        def keep() -> None:
-            runs.verdicts[knowledge] = exam.status, exam.picture
-
-        self._run_stack.callback(keep)  # after the exam was closed
-        return self._run_stack.enter_context(exam)
+        return self._run_stack.enter_context(LiveExam(command, runs.present.knowledge))
 
     def _measure(self, simulation: "Simulation") -> "LiveMeasure":
         from kurt2rt.service.live_measure import LiveMeasure

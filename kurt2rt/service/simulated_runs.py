@@ -10,7 +10,7 @@ import anyio.to_thread
 
 from config.settings_files import shipped_names
 from hal.robot_settings import RobotSettings
-from kurt2rt.channel.protocol.simulation import ExamStatus, SimulationView, TaskName
+from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.settings import load_critic
@@ -94,8 +94,6 @@ class SimulatedRuns:
         self._taught_by_script = taught_by_script
         self._files = {first.task_name: first.knowledge}
         self._view: SimulationView | None = None
-        self.verdicts: dict[Path, tuple[ExamStatus, Path | None]] = {}
-        """Newest exam of each knowledge file, and its picture, from earlier runs."""
         self.present = first
         self.next: SimulatedRun | None = None
 
@@ -138,7 +136,6 @@ class SimulatedRuns:
         loaded, knowledge = self.present.loaded, self.present.knowledge
         self.present = replace(self.present, fresh=False, loaded=None)
         kept = archive_existing(knowledge)
-        self.verdicts.pop(knowledge, None)
         if loaded is not None:
             loaded.rename(knowledge)
         return "" if kept is None else f"the knowledge up to now is kept as {kept}"

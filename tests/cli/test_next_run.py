@@ -1,5 +1,6 @@
 """Runs of the simulated robot, one after the other in one program."""
 
+import json
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
@@ -11,6 +12,7 @@ import pytest
 from hal.kurt2_settings import load_kurt2
 from hal.robot import STANDSTILL
 from kurt2rt.channel.protocol.requests import NextRunRequest, SpeedRequest
+from kurt2rt.channel.protocol.simulation import EXAM, NO_EXAM, ExamStatus
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.decision.standing import NEXT_RUN
@@ -24,6 +26,8 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.platform.durable_files import write_durably
+from kurt2rt.service.live_exam import verdict_file
 from kurt2rt.service.simulated_runs import SimulatedRun, SimulatedRuns
 from kurt2rt.teacher import TeacherClient
 from simbridge.simulation import Kurt2SimulationFactory
@@ -202,16 +206,26 @@ async def state_at(client: TeacherClient, tick: int) -> State:
     raise AssertionError("the client ended")
 
 
-async def test_next_run_keeps_its_teacher_and_the_lessons(tmp_path: Path) -> None:
+async def test_next_run_keeps_teacher_lessons_and_verdict(tmp_path: Path) -> None:
     knowledge = tmp_path / "var" / "wall_following.knowledge"
+    knowledge.parent.mkdir()
+    open_knowledge(knowledge, ROBOT, TASK).close()
+    passed = ExamStatus(False, 1.0, "Passed in 3 of 3 worlds.")
+    write_durably(verdict_file(knowledge), json.dumps(EXAM.plain_of(passed)))
     with running("run", "--port", "0", folder=tmp_path) as robot:
         async with teacher_of(robot, tmp_path) as client:
             asks = await state_where(client, b"", cause="unknown", teacher="local")
             assert (await client.send(Teach, action="forward", decision_tick=asks.tick)).accepted
             first = await state_where(client, b"", lessons=1, unsaved=0)
-            answer = await client.send(NextRunRequest, world="b", fresh=True, task=None)
+            assert await client.exam() == passed
+            answer = await client.send(NextRunRequest, world="b", fresh=False, task=None)
             assert answer.accepted, answer.text
-            second = await state_where(client, first.boot, teacher="local", lessons=0)
+            moved = await state_where(client, first.boot, teacher="local", lessons=1)
+            assert await client.exam() == passed
+            answer = await client.send(NextRunRequest, world=None, fresh=True, task=None)
+            assert answer.accepted, answer.text
+            second = await state_where(client, moved.boot, teacher="local", lessons=0)
+            assert await client.exam() == NO_EXAM, "of the new file"
             assert second.stopped == NEXT_RUN
             assert (second.left_m_s, second.right_m_s) == (0.0, 0.0)
             simulation, world = await client.simulation(), await client.world()
@@ -233,4 +247,5 @@ async def test_next_run_keeps_its_teacher_and_the_lessons(tmp_path: Path) -> Non
         assert len(list(kept.entries())) == 1
     with Journal.read_only(knowledge) as new:
         assert len(list(new.entries())) == 1
-    assert len(names_in(tmp_path / "var" / "runs")) == 3
+    assert verdict_file(knowledge.with_name("wall_following.knowledge.1")).is_file()
+    assert len(names_in(tmp_path / "var" / "runs")) == 4

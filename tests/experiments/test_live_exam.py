@@ -30,10 +30,10 @@ def copy(tmp_path: Path) -> Path:
     return path
 
 
-def saying(*lines: str, after: str = "") -> "LiveExam":
+def saying(*lines: str, taught: Path = Path("/dev/null/file"), after: str = "") -> "LiveExam":
     """Return an exam whose process prints these lines, then runs `after`."""
     script = "import sys, time\n" + "".join(f"print({line!r}, flush=True)\n" for line in lines) + after
-    return LiveExam(lambda _, picture: (sys.executable, "-c", script, str(picture)))
+    return LiveExam(lambda _, picture: (sys.executable, "-c", script, str(picture)), taught)
 
 
 def ended(exam: LiveExam) -> ExamStatus:
@@ -44,11 +44,16 @@ def ended(exam: LiveExam) -> ExamStatus:
 
 def test_live_exam_returns_verdict_and_picture(copy: Path, tmp_path: Path) -> None:
     drawn = "open(sys.argv[1], 'wb').close()"
-    with saying("a word of some library", json.dumps(EXAM.plain_of(OVER)), after=drawn) as exam:
-        exam.begin(copy, tmp_path / "exam.png")
+    taught, picture = tmp_path / "walls.knowledge", tmp_path / "exams" / "exam.png"
+    taught.touch()
+    picture.parent.mkdir()
+    with saying("a word of some library", json.dumps(EXAM.plain_of(OVER)), taught=taught, after=drawn) as exam:
+        exam.begin(copy, picture)
         told = ended(exam)
     assert (told.text, told.picture, told.trouble, told.running) == (OVER.text, "exam.png", "", False)
     assert not copy.exists()
+    again = saying(taught=taught)
+    assert (again.status, again.picture) == (told, picture), "the next run on that file tells it again"
 
 
 def test_an_exam_is_over_only_with_its_picture(copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -175,6 +175,8 @@ class HealthReport:
     doing: Line
     """Mover of the wheels, or reason of the standstill, in a few words."""
     rlas: Number
+    actions: Number
+    """Number of different actions that the RLAs have."""
     lessons: Number
     """Number of lessons that stand."""
     punctuality: TickLateness

@@ -47,7 +47,7 @@ def rows_of(report: HealthReport) -> tuple[HealthRow, ...]:
     written = "all durable" if not report.safety.unwritten else f"{report.safety.unwritten} not durable yet"
     took_ms = report.safety.last_write_ms
     took = "" if took_ms is None else f"; the disk took {took_ms:.0f} ms for the last"
-    rows.append(("lessons", f"{report.lessons} in force, {report.rlas} RLAs, {written}{took}"))
+    rows.append(("lessons", f"{report.lessons} in force, {rules_in(report)}, {written}{took}"))
     rows.append(("progress", progress_in(report.progress)))
     rooms = [
         f"{each.of}: {'no answer' if each.free_bytes is None else f'{size(each.free_bytes)} free'}"
@@ -83,6 +83,12 @@ def lines_of(report: HealthReport | None) -> tuple[str, ...]:
         return ("nothing is known yet, the robot program has just begun",)
     troubles = (f"{'!!' if each.urgent else '!'} {trouble_in(each)}" for each in report.troubles)
     return (headline(report), *(f"{row.name:<9} {row.text}" for row in rows_of(report)), *troubles)
+
+
+def rules_in(report: HealthReport) -> str:
+    """Return the number of rules and of their different actions, in words."""
+    rules = "1 rule" if report.rlas == 1 else f"{report.rlas} rules"
+    return f"{rules} of {'1 action' if report.actions == 1 else f'{report.actions} actions'}"
 
 
 def progress_in(progress: Progress) -> str:

@@ -141,6 +141,7 @@ class HealthMonitor:
             tick=snapshot.tick,
             doing=snapshot.doing,
             rlas=snapshot.rlas,
+            actions=snapshot.actions,
             lessons=snapshot.lessons,
             punctuality=punctuality,
             ages=SensorAges(

@@ -33,6 +33,7 @@ class Snapshot:
     ticks: int
     missed_ticks: int
     rlas: int
+    actions: int
     lessons: int
     doing: str
     progress: Progress = NO_PROGRESS
@@ -47,7 +48,7 @@ class Snapshot:
 def take_snapshot(
     runtime: Runtime, record: TickRecord, keeping: JournalWriter, instruments: Probes, now_s: float
 ) -> Snapshot:
-    """Return the values of a program after a tick; takes some 10 µs and never waits.
+    """Return the values of a program after a tick; takes some 10 µs, 0.1 ms more for 1 000 RLAs, and never waits.
 
     Args:
         runtime: of the program.
@@ -72,6 +73,7 @@ def take_snapshot(
         ticks=timer.ticks,
         missed_ticks=timer.missed_ticks,
         rlas=len(system),
+        actions=len({each.action for each in system.rlas if not each.is_withdrawn}),
         lessons=system.history.standing,
         progress=runtime.progress.progress(),
         doing=format_activity(record),

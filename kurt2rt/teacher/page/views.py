@@ -7,7 +7,7 @@ from typing import Any
 
 from hal.guard_reason import GuardReason
 from kurt2rt.channel.protocol.health import HealthReport
-from kurt2rt.channel.protocol.health_text import headline, name_of, rows_of, trouble_in
+from kurt2rt.channel.protocol.health_text import headline, name_of, rows_of, rules_in, trouble_in
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.simulation import EXAM, SIMULATION, ExamStatus, SimulationView, WorldView
@@ -202,7 +202,7 @@ def situations_view(names: tuple[str, ...]) -> dict[str, Any]:
 def health_view(report: HealthReport | None) -> dict[str, Any]:
     """Return the message with the health report in words; empty in the robot's first second."""
     if report is None:
-        return {"kind": "health", "tick": None, "says": "", "rows": [], "troubles": []}
+        return {"kind": "health", "tick": None, "says": "", "rules": "", "rows": [], "troubles": []}
     troubles = [
         {"name": name_of(each), "what": each.what, "text": trouble_in(each), "urgent": each.urgent}
         for each in report.troubles
@@ -211,6 +211,7 @@ def health_view(report: HealthReport | None) -> dict[str, Any]:
         "kind": "health",
         "tick": report.tick,
         "says": headline(report),
+        "rules": rules_in(report),
         "rows": [each._asdict() for each in rows_of(report)],
         "troubles": troubles,
     }

@@ -26,6 +26,7 @@ WELL = HealthReport(
     tick=738_400,
     doing="forward by RLA 12",
     rlas=90,
+    actions=8,
     lessons=123,
     punctuality=TickLateness(0.13, 0.08, 0.31, 0.9, 0.36, 738_399, 0, 0),
     ages=SensorAges(0.004, 0.004, 0.004),

@@ -32,6 +32,7 @@ CALM = Snapshot(
     ticks=100,
     missed_ticks=0,
     rlas=0,
+    actions=0,
     lessons=0,
     doing="stands and asks",
 )

@@ -1,16 +1,20 @@
 """The report of a robot that runs on ticks that the test makes; the thread is real."""
 
 import threading
+from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
 import pytest
 
 from kurt2rt.channel.protocol.health import HealthReport
+from kurt2rt.channel.protocol.health_text import rules_in
+from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.service.health.monitor import HealthMonitor, MachineMonitor, battery_of
 from kurt2rt.service.health.probes import Probes
 from tests.channel.channel_fixture import ChannelFixture
+from tests.knowledge.lessons import created, withdrawn
 from tests.patience import PATIENCE_S
 
 
@@ -86,6 +90,16 @@ def test_a_report_is_made_once_a_second_and_told_after_a_tick(robot: Robot) -> N
     assert robot.heard == [robot.watch.newest]
     robot.tick()
     assert len(robot.heard) == 1
+
+
+def test_rules_are_counted_with_their_actions(robot: Robot) -> None:
+    system = robot.desk.runtime.level.system
+    for number, action in enumerate(("forward", "forward", "back", "stand"), start=1):
+        rla = replace(created(number, action=action).rla, condition=(100.0 * number,) * system.dimensions)
+        system.apply(RlaCreated(rla))
+    system.apply(withdrawn(4, "stand"))
+    robot.tick()
+    assert rules_in(robot.report()) == "4 rules of 2 actions"
 
 
 def test_the_battery_is_the_machines_own_and_of_two_the_emptier(tmp_path: Path) -> None:

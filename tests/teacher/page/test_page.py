@@ -124,7 +124,6 @@ def test_page_that_only_watches_reads_lessons_and_explains(a_lesson: Lesson) -> 
     )
     a_lesson.reads("#sentence", "RLA 1 does forward, taught by you")
     phone.touch("#tab-lessons")
-    a_lesson.reads("#rules", "1 rule")
     assert phone.shows("#lesson-list button")
     a_lesson.show(teacher="ann")
     phone.wait(lambda: not phone.shows("#lesson-list button"), "this page may not undo")
@@ -590,6 +589,8 @@ def test_faults_are_coloured_with_time_and_cure(a_lesson: Lesson) -> None:
     assert phone.run("return document.querySelector('#health').className;") == "warns urgent"
     phone.touch("#link")
     a_lesson.reads("#phase", "1, Supervised")
+    assert "90 rules of 8 actions" in phone.text("#health-rows")
+    assert phone.run("return document.querySelector('#rules').textContent;") == "90 rules of 8 actions"
     a_lesson.reads("#health-troubles", f"{SILENT.what} (for 2 s): {SILENT.to_do}")
     on_each_screen(phone, "12-health")
     phone.touch("#stop")  # which is never covered

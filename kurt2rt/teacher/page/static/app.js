@@ -364,7 +364,6 @@ function show() {
   setText($("phase"), `${state.phase}, ${session.phaseNames[state.phase - 1] ?? ""}${slow}`);
   setText($("clock"), clock(state.clock_s));
   setText($("session"), state.session ?? "no session");
-  setText($("rules"), state.rlas === 1 ? "1 rule" : `${state.rlas} rules`);
   $("rewind").disabled = $("rewind-time").disabled = !rewind.ready || !inControl();
   $("go").disabled = !state.stands.needs_go || state.by_hand || !inControl();
   showLink(state);

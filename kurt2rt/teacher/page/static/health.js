@@ -19,6 +19,7 @@ export class Health {
   // Takes the report of the last second, in the robot's own words.
   update(report) {
     this.#report = report;
+    setText($("rules"), report.rules);
     if ($("health-table").open) this.#fill();
   }
 
