@@ -75,24 +75,12 @@ _SPEED_CHANGES = (GuardReason.SLEW_LIMIT, GuardReason.SPEED_LIMIT)
 """Limits that every change of speed meets; the page leaves them out."""
 _COPIED = (
     *("tick", "phase", "bumpers", "left_m_s", "right_m_s", "cause", "action", "rla", "nearest", "nearest_action"),
-    *("taught_at", "teacher", "by_hand", "rlas", "lessons", "unsaved", "session", "clock_s", "trouble"),
-    *(
-        "missed_ticks",
-        "behaviour",
-        "value",
-        "image",
-        "nearest_image",
-        "nearest_value",
-        "opinion",
-        "opinion_of",
-        "agreement",
-        "trusted",
-        "role",
-    ),
-    *("bad_share", "signals_missing", "asks_at", "goal", "plan", "plan_says", "lesson_speed", "speed_share"),
+    *("taught_at", "teacher", "by_hand", "lessons", "unsaved", "session", "clock_s", "trouble", "behaviour", "value"),
+    *("image", "nearest_image", "nearest_value", "opinion", "opinion_of", "agreement", "trusted", "role", "bad_share"),
+    *("signals_missing", "asks_at", "goal", "plan", "plan_says", "lesson_speed", "speed_share"),
 )
 """Fields of State that the page gets as they are."""
-_FINITE = ("infrared_age_s", "distance", "radius", "late_p99_ms")
+_FINITE = ("distance", "radius")
 """Fields of State that may be infinite, which the page gets as null."""
 
 
