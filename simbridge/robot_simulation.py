@@ -54,12 +54,9 @@ class RobotWorlds:
         """Draw a world from above on axes in m. Raises config.settings.SettingsError for an unknown world."""
         draw_world(axes, load_world(world, self.settings))
 
-    def draw_robot(self, axes: "Axes", world: str) -> None:
-        """Draw the robot at the first start pose of a world, on axes in m.
-
-        Raises config.settings.SettingsError for an unknown world.
-        """
-        draw_robot(axes, load_world(world, self.settings).start_poses[0].pose, self.settings)
+    def draw_robot(self, axes: "Axes", pose: Pose, colour: str, label: str = "") -> None:
+        """Draw the robot at a pose, on axes in m, with a label for the legend."""
+        draw_robot(axes, pose, self.settings, colour, label)
 
     def settings_of(self, world: str) -> str:
         """Return all settings of a world as a text. Raises config.settings.SettingsError for an unknown world."""

@@ -13,11 +13,12 @@ from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.simulation import EXAM, ExamStatus, WorldVerdict
 from kurt2rt.cli.with_parent import end_with_parent
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.lockstep.drawing import draw_exams
+from kurt2rt.experiments.lockstep.drawing import exams_figure
 from kurt2rt.experiments.lockstep.drive_row import label_of
 from kurt2rt.experiments.study.exam_tables import verdict_text
 from kurt2rt.experiments.study.examination import examine_file
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.platform.save_figure import save_figure
 from simbridge.contracts.robot_kind import simulations_of
 
 NICENESS = 10
@@ -54,9 +55,8 @@ def _examine(knowledge: Path, picture: Path, robot_name: str, task_name: str, se
             _tell(ExamStatus(True, share, what))
 
     results = examine_file(knowledge, robot, task, seed, report)
-    unborn = picture.with_name(f".{picture.name}.unborn")
-    picture.parent.mkdir(parents=True, exist_ok=True)
-    draw_exams(results, simulations_of(robot), unborn)
+    unborn = picture.with_name(f".unborn.{picture.name}")
+    save_figure(exams_figure(results, simulations_of(robot)), unborn)
     unborn.rename(picture)
     verdicts = tuple(
         WorldVerdict(label_of(each.world), each.passed, verdict_text(each), each.judged) for each in results

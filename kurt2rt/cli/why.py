@@ -33,7 +33,7 @@ from kurt2rt.runs.replay.run import Run
 from kurt2rt.service.settings import ServiceSettings, load_service
 
 _FORMATS = (".png", ".svg", ".pdf")
-"""Suffixes of kurt2rt.runs.explain.save_figure, which cannot be imported here: matplotlib is an extra."""
+"""Suffixes of kurt2rt.platform.save_figure, which cannot be imported here: matplotlib is an extra."""
 _REPORT_EVERY = 1000
 _MOST_PARTS = 40
 """Parts of a run that are listed; if it has more, those in which it did not drive by itself."""

@@ -16,9 +16,9 @@ from kurt2rt.experiments.lockstep.drive_row import PLACES, DriveRow, label_of
 from kurt2rt.experiments.lockstep.engine import ON_BUS, BatchDiffersError, Engine, Engines, choose_witnesses
 from kurt2rt.experiments.lockstep.exam import ExamSetup
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, parse_break
-from kurt2rt.experiments.lockstep.trails import legend_below
+from kurt2rt.experiments.lockstep.trails import draw_drive, legend_below
 from kurt2rt.experiments.study.exam_tables import WORLD
-from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of, save
+from kurt2rt.experiments.study.figures import SavedFigure, panels_of
 from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of, wilson_interval
 from kurt2rt.experiments.study.jobs import SEED, JobParts, Outcome, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash
@@ -35,6 +35,7 @@ from kurt2rt.experiments.study.table import (
     to_text,
 )
 from kurt2rt.knowledge.journal.loading import read_lessons
+from kurt2rt.platform.save_figure import save_figure
 from simbridge.contracts.batch import BatchRefusedError
 
 BATCH_GAIN = 100.0
@@ -412,8 +413,8 @@ def draw_worst(jobs: Iterable[BlockJob], commands: Sequence[str]) -> Iterator[Sa
         figure, (axes,) = panels_of(1, 1, (5.6, 6.0))
         draw_drive(axes, job.factory, drive)
         axes.set_title(f"Run {drive.seed} in world {label_of(drive.world)}")
-        legend_below(axes, columns=4)
-        save(figure, path)
+        legend_below(axes)
+        save_figure(figure, path)
         asked = f"{drive.questions} times in the unknown" if drive.questions else ""
         parts = (f"world {label_of(drive.world)}", collisions_text(drive.collisions), asked, drive.early_end)
         yield SavedFigure(path, f"Run {drive.seed}: {', '.join(filter(None, parts))}", command)

@@ -25,7 +25,7 @@ from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import ON_BUS
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
 from kurt2rt.experiments.study.examination import Checkpoint, Examiner, run_checkpoints
-from kurt2rt.experiments.study.figures import SavedFigure, save
+from kurt2rt.experiments.study.figures import SavedFigure
 from kurt2rt.experiments.study.intervals import wilson_interval
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob, TaughtOutcome, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints
@@ -42,6 +42,7 @@ from kurt2rt.experiments.study.table import (
     total,
 )
 from kurt2rt.knowledge.files.archive_existing import archive_existing
+from kurt2rt.platform.save_figure import save_figure
 from simbridge.contracts.batch import BatchRefusedError
 
 SHIPPED = "rla"
@@ -422,7 +423,7 @@ def draw_curves(rows: Sequence[Row], about: Compared, path: Path) -> None:
         axes.set_xlabel("presses; the last point is the end of the lesson")
         if axes.lines:
             axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-    save(figure, path)
+    save_figure(figure, path)
 
 
 def _draw(axes: Axes, after: tuple[int, ...], row: Row, style: str) -> None:

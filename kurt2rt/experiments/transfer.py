@@ -18,7 +18,7 @@ from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.study.examination import Checkpoint, Examiner, run_checkpoints
-from kurt2rt.experiments.study.figures import SavedFigure, save
+from kurt2rt.experiments.study.figures import SavedFigure
 from kurt2rt.experiments.study.intervals import wilson_interval
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob, TaughtOutcome, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints
@@ -40,6 +40,7 @@ from kurt2rt.experiments.study.table import (
     total,
 )
 from kurt2rt.knowledge.journal.loading import copy_knowledge, read_lessons
+from kurt2rt.platform.save_figure import save_figure
 
 AFTER = (0, 2, 5, 10, 15, 20)
 """Numbers of presses after which a robot is examined."""
@@ -438,4 +439,4 @@ def draw_curves(study: TransferStudy, path: Path) -> None:
         axes.set_ylim(-0.03, 1.03)
         axes.grid(alpha=0.3)
     panels[0].set_ylabel("share of robots that are right there")
-    save(figure, path)
+    save_figure(figure, path)

@@ -16,7 +16,7 @@ from kurt2rt.gym.episode_setup import PURPOSE, EpisodeSetup
 from kurt2rt.gym.moment import Moment
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from simbridge.contracts.batch import BatchFactory, BatchRefusedError, CommandedMind, DriveSettings, Trace
-from simbridge.contracts.simulation import Pose, Position
+from simbridge.contracts.simulation import Pose
 
 _ON_THE_BUS = 'drive on the CAN bus: engine="can"'
 
@@ -36,7 +36,7 @@ class BatchDrive:
         """
         task, settings = setup.task, setup.settings
         self.world = setup.world
-        self.trail: list[Position] = []
+        self.trail: list[Pose] = []
         self._factory, self._setup = factory, setup
         drive_settings = build_drive_settings(settings, task, minimum_ticks=0)
         definition = load_situation(task.situation, settings.infrared.names)
@@ -134,7 +134,7 @@ class BatchDrive:
         self._simulation.follow([pose])
         self._metric.update(pose)
         if (self._ticks + 1) % Episode.trail_stride == 0:
-            self.trail.append(Position(pose.x_m, pose.y_m))
+            self.trail.append(pose)
         before, self._collisions = self._collisions, collisions
         reached = (
             (Ending.OFF_COURSE, self._metric.needs_reset),

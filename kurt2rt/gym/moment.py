@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from behaviors.judges.judge import AppraisalFeatures
 from hal.guard_reason import GuardReason
 from kurt2rt.gym.endings import Ending
-from simbridge.contracts.simulation import Pose, Position
+from simbridge.contracts.simulation import Pose
 
 
 class Moment(NamedTuple):
@@ -48,7 +48,7 @@ class AgentDrive(Protocol):
         ...
 
     @property
-    def trail(self) -> list[Position]:
+    def trail(self) -> list[Pose]:
         """Way so far, a point every 0.1 s, in m."""
         ...
 

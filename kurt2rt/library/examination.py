@@ -41,12 +41,11 @@ class Examination:
         return sum(drive.judged for drive in self.drives)
 
     def plot(self) -> "Figure":
-        """Return a figure of the first drive from above, with the places of unknown situations."""
+        """Return a figure of the first drive from above, over the teacher's own, as `kurt2rt exam` draws it."""
         # Late import: matplotlib is an extra that a robot does not need.
-        from kurt2rt.library.figures import drive_figure
+        from kurt2rt.experiments.lockstep.drawing import exams_figure
 
-        drive = self.drives[0]
-        return drive_figure(self.factory, drive.world, drive.trail, drive.asked_at)
+        return exams_figure(self.drives[:1], self.factory)
 
     def __repr__(self) -> str:
         """Return a line for each drive, and the number that passed."""

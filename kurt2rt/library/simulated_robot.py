@@ -201,9 +201,9 @@ class SimulatedRobot:
     def plot(self) -> "Figure":
         """Return a figure of the world from above, the drive so far, and the places of its questions."""
         # Late import: matplotlib is an extra that a robot does not need.
-        from kurt2rt.library.figures import drive_figure
+        from kurt2rt.experiments.lockstep.drawing import drive_figure
 
-        return drive_figure(self._factory, self._world, self._drive.trail, self._drive.ask_positions)
+        return drive_figure(self._factory, self._world, self._drive)
 
     @property
     def senses(self) -> Senses:

@@ -231,11 +231,8 @@ class SimulationFactory(Protocol):
         """Draw a world from above on axes in m. Raises config.settings.SettingsError for an unknown world."""
         ...
 
-    def draw_robot(self, axes: "Axes", world: str) -> None:
-        """Draw the robot at a pose where a drive in this world may begin, on axes in m.
-
-        Raises config.settings.SettingsError for an unknown world.
-        """
+    def draw_robot(self, axes: "Axes", pose: Pose, colour: str, label: str = "") -> None:
+        """Draw the robot at a pose, to scale on axes in m, with a label for the legend."""
         ...
 
 

@@ -1,7 +1,6 @@
 """Drawing of worlds, robots and trajectories on the caller's axes."""
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from hal.robot_settings import RobotSettings
@@ -12,8 +11,8 @@ from simbridge.worlds.world_settings import WorldSettings
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_WALL = "#d5d5d5"
-_WALL_EDGE = "#9a9a9a"
+_WALL = "#c3c9cf"
+_WALL_EDGE = "#3d454d"
 _ROBOT = "#2f6db3"
 _TEXT = "#222222"
 _TEXT_SIZE = 11.0
@@ -32,16 +31,16 @@ def draw_world(axes: "Axes", world: WorldSettings) -> None:
     axes.set_aspect("equal")
     axes.set_facecolor(_WALL)
     outline = axes.add_patch(
-        Polygon(world.outline, closed=True, facecolor="white", edgecolor=_WALL_EDGE, linewidth=1.0, zorder=0)
+        Polygon(world.outline, closed=True, facecolor="white", edgecolor=_WALL_EDGE, linewidth=2.0, zorder=0)
     )
     for corners in world.solids:
         solid = axes.add_patch(
-            Polygon(corners, closed=True, facecolor=_WALL, edgecolor=_WALL_EDGE, linewidth=1.0, zorder=1)
+            Polygon(corners, closed=True, facecolor=_WALL, edgecolor=_WALL_EDGE, linewidth=1.5, zorder=1)
         )
         solid.set_clip_path(outline)  # many walls start inside the wall they lean on
     for post in world.round_obstacles:
         axes.add_patch(
-            Circle((post.x_m, post.y_m), post.radius_m, facecolor=_WALL, edgecolor=_WALL_EDGE, linewidth=1.0, zorder=1)
+            Circle((post.x_m, post.y_m), post.radius_m, facecolor=_WALL, edgecolor=_WALL_EDGE, linewidth=1.5, zorder=1)
         )
     step_m = next(step_m for step_m in (1, 2, 5, 10, 20, 50) if max(width_m, height_m) <= _MOST_TICKS * step_m)
     axes.set_xticks(range(0, math.floor(width_m) + 1, step_m))
@@ -53,26 +52,19 @@ def draw_world(axes: "Axes", world: WorldSettings) -> None:
     axes.set_ylabel("y in m", fontsize=_TEXT_SIZE, color=_TEXT)
 
 
-def draw_robot(axes: "Axes", pose: Pose, robot: RobotSettings, colour: str = _ROBOT) -> None:
-    """Draw the body to scale in metres, with a wedge that points ahead."""
+def draw_robot(axes: "Axes", pose: Pose, robot: RobotSettings, colour: str = _ROBOT, label: str = "") -> None:
+    """Draw the body to scale in metres, with a wedge that points ahead; `label`: its name in the legend."""
     from matplotlib.patches import Polygon
 
     length_m, width_m = robot.geometry.outline_length_m, robot.geometry.outline_width_m
     centre = (pose.x_m, pose.y_m)
     body = rectangle(centre, length_m, width_m, pose.heading_rad)
-    axes.add_patch(Polygon(body, closed=True, facecolor=colour, edgecolor=colour, alpha=0.25, zorder=3))
-    axes.add_patch(Polygon(body, closed=True, fill=False, edgecolor=colour, linewidth=1.0, zorder=3))
+    axes.add_patch(Polygon(body, closed=True, facecolor=colour, alpha=0.3, linewidth=0.0, zorder=4, label=label))
+    axes.add_patch(Polygon(body, closed=True, fill=False, edgecolor=colour, linewidth=1.6, zorder=5))
     cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
 
     def at(ahead_m: float, left_m: float) -> Point:
         return pose.x_m + ahead_m * cos - left_m * sin, pose.y_m + ahead_m * sin + left_m * cos
 
     wedge = (at(length_m * 0.42, 0.0), at(length_m * 0.12, width_m * 0.25), at(length_m * 0.12, -width_m * 0.25))
-    axes.add_patch(Polygon(wedge, closed=True, facecolor=colour, linewidth=0.0, zorder=4))
-
-
-def draw_trail(axes: "Axes", points: Sequence[Point], colour: str = _ROBOT) -> None:
-    """Draw a trajectory of (x, y) points in metres."""
-    axes.plot(
-        [x for x, _ in points], [y for _, y in points], color=colour, linewidth=1.2, solid_joinstyle="round", zorder=2
-    )
+    axes.add_patch(Polygon(wedge, closed=True, facecolor=colour, linewidth=0.0, zorder=5))

@@ -29,7 +29,7 @@ def row(world: str = "a", verdict: ExamVerdict = PASSED, **more: Any) -> DriveRo
         "share_unknown": 0.034,
         "action_changes_per_s": 1.5,
         "findings": {"distance error, m": 0.05},
-        "trail": ((1.0, 1.0), (1.1, 1.0), (1.2, 1.1)),
+        "trail": ((1.0, 1.0, 0.0), (1.1, 1.0, 0.0), (1.2, 1.1, 0.8)),
     }
     return DriveRow.model_validate({**fields, **more})
 

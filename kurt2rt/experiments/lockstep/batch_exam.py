@@ -10,7 +10,7 @@ from behaviors.metrics.task_metric import BorderMetric, StretchMetric, TaskMetri
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, build_minds, require_known, stuck_rule_of
-from kurt2rt.experiments.lockstep.drive_row import DriveRow, rounded_places
+from kurt2rt.experiments.lockstep.drive_row import DriveRow, rounded_places, rounded_poses
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.exam import ExamSetup
 from simbridge.contracts.batch import STANDS, Batch, BatchFactory, FollowedSimulation, Start, Tally
@@ -188,10 +188,10 @@ class _Drive:
             first_question_s=tally.first_question * self._period_s,
             first_collision_s=tally.first_collision * self._period_s,
             action_changes_per_s=self._action_changes / duration_s,
-            trail=rounded_places(pose[:2] for pose in self._trail),
-            asked_at=rounded_places(pose[:2] for pose in self._asked),
+            trail=rounded_poses(self._trail),
+            asked_at=rounded_places(self._asked),
             findings={name: float(value) for name, value in metric.findings.items()},
-            collided_at=rounded_places(pose[:2] for pose in self._collided),
+            collided_at=rounded_places(self._collided),
             least_progress=self._task.metric.least_progress(simulation, self._task.exam.duration_s)
             if self._measured
             else 0.0,

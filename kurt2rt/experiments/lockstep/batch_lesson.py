@@ -297,11 +297,13 @@ class BatchTrainingRun(TrainingRun):
         self._measure_all(poses)
         self._follow_detector(self._stuck, begin, cut - 1)
         first = -(begin + 1) % self.trail_stride
-        self.trail += [Position(pose.x_m, pose.y_m) for pose in poses[first : len(poses) - 1 : self.trail_stride]]
+        self.trail += poses[first : len(poses) - 1 : self.trail_stride]
+        met = np.flatnonzero(np.diff(self.robot.log.collisions[begin : cut + 1]))
+        self.collided_at += [Position(*poses[place][:2]) for place in met]
         self._look_after(cut)
         self._command_behaviour(self.runtime.active_behaviour.behaviour)
         if cut % self.trail_stride == 0:
-            self.trail.append(self.simulation.position)
+            self.trail.append(self.simulation.pose)
         for second in range(begin // self.ticks_per_second + 1, cut // self.ticks_per_second + 1):
             tick = second * self.ticks_per_second
             self._note_second(tick, self._mind.rlas_after(tick))

@@ -8,11 +8,15 @@ from matplotlib.figure import Figure
 
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, label_of
+from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
-from kurt2rt.experiments.lockstep.trails import TRAIL, draw_drive, draw_trail, legend_below
+from kurt2rt.experiments.lockstep.trails import TRAIL, draw_drive, draw_trail, draw_way, legend_below
+from kurt2rt.platform.save_figure import ShownFigure, save_figure
 from simbridge.contracts.simulation import SimulationFactory
 
 _TEACHER = "#b0b0b0"
+_SIDE = 5.2
+"""Side of a drive's panel, in inches."""
 
 
 def draw_curriculum(
@@ -24,9 +28,9 @@ def draw_curriculum(
     """
     panels = 2 + len(exams)
     columns = (panels + 1) // 2
-    figure = Figure(figsize=(5.2 * columns, 10.0), layout="constrained")
+    figure = Figure(figsize=(_SIDE * columns, 10.0), layout="constrained")
     axes = figure.subplots(2, columns).flatten().tolist()
-    draw_drive(axes[0], factory, lesson.counts.world, lesson.trail, lesson.ask_positions)
+    draw_way(axes[0], factory, lesson.counts.world, lesson.trail, lesson.ask_positions, lesson.collided_at)
     legend_below(axes[0])
     axes[0].set_title(
         f"Lesson in world {label_of(lesson.counts.world)}: {lesson.counts.teaching_s:.0f} s, {len(lesson.rlas)} RLAs"
@@ -36,24 +40,34 @@ def draw_curriculum(
         _draw_exam(panel, each, factory)
     for panel in axes[panels:]:
         panel.set_axis_off()
-    figure.savefig(path, dpi=110)
+    save_figure(figure, path)
 
 
-def draw_exams(exams: Sequence[DriveRow], factory: SimulationFactory, path: Path) -> None:
-    """Write a PNG: each exam over the teacher's own drive, one below the other as a phone shows them.
+def exams_figure(exams: Sequence[DriveRow], factory: SimulationFactory) -> Figure:
+    """Return each exam over the teacher's own drive, one below the other as a phone shows them.
 
-    Raises OSError, and SettingsError for an unknown world.
+    Raises SettingsError for an unknown world.
     """
-    figure = Figure(figsize=(5.2, 5.2 * len(exams)), layout="constrained")
+    figure = ShownFigure(figsize=(_SIDE, _SIDE * len(exams)), layout="constrained")
     for panel, each in zip(figure.subplots(len(exams), 1, squeeze=False).flatten(), exams, strict=True):
         _draw_exam(panel, each, factory)
-    figure.savefig(path, dpi=110, format="png")
+    return figure
+
+
+def drive_figure(factory: SimulationFactory, world: str, drive: Episode) -> Figure:
+    """Return a drive so far, in its world from above. Raises SettingsError for an unknown world."""
+    figure = ShownFigure(figsize=(_SIDE, _SIDE), layout="constrained")
+    axes = figure.subplots()
+    draw_way(axes, factory, world, drive.trail, drive.ask_positions, drive.collided_at)
+    if drive.trail or drive.ask_positions:
+        legend_below(axes)
+    return figure
 
 
 def _draw_exam(panel: Axes, exam: DriveRow, factory: SimulationFactory) -> None:
     assert exam.teacher is not None
     draw_trail(panel, exam.teacher.trail, "teacher's own drive", colour=_TEACHER, width=3.0, zorder=2)
-    draw_drive(panel, factory, exam.world, exam.trail, exam.asked_at)
+    draw_drive(panel, factory, exam)
     legend_below(panel)
     verdict = "success" if exam.passed else exam.verdict.text
     panel.set_title(

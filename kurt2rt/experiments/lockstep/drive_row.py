@@ -9,7 +9,7 @@ from pydantic import Field
 from behaviors.metrics.task_metric import JUNCTIONS, RIGHT
 from config.settings import Settings
 from kurt2rt.core.task_settings import SuccessSettings
-from simbridge.contracts.simulation import Position
+from simbridge.contracts.simulation import Pose, Position
 
 Place = tuple[float, float]
 """x and y in m, to the millimetre."""
@@ -71,8 +71,8 @@ class DriveRow(Settings):
     """Further measures of the task's metric, by name."""
     teacher: "DriveRow | None" = None
     """Drive of the teacher's policy; None where it is stored elsewhere."""
-    trail: tuple[Place, ...] = ()
-    """Points 0.2 s apart; it and the next two are empty if no picture is drawn."""
+    trail: tuple[Pose, ...] = ()
+    """Poses in m and rad, 0.2 s apart; it and the next two are empty if no picture is drawn."""
     asked_at: tuple[Place, ...] = ()
     collided_at: tuple[Place, ...] = ()
 
@@ -167,6 +167,11 @@ def label_of(world: str) -> str:
     return world.upper() if len(world) == 1 else world
 
 
-def rounded_places(positions: Iterable[Position | Place]) -> tuple[Place, ...]:
+def rounded_places(positions: Iterable[Position | Pose]) -> tuple[Place, ...]:
     """Return positions in m, rounded to the millimetre, as results store them."""
-    return tuple((round(x_m, 3), round(y_m, 3)) for x_m, y_m in positions)
+    return tuple((round(each.x_m, 3), round(each.y_m, 3)) for each in positions)
+
+
+def rounded_poses(poses: Iterable[Pose]) -> tuple[Pose, ...]:
+    """Return poses rounded to the millimetre and to 1/1000 rad, as results store them."""
+    return tuple(Pose(*(round(each, 3) for each in pose)) for pose in poses)

@@ -119,9 +119,10 @@ class Episode(ABC):
         self.period_s = period_s
         self.ticks_per_second = round(1 / period_s)
         self.metric = task.metric.build(simulation, task.behaviours, chance)
-        self.trail: list[Position] = []
+        self.trail: list[Pose] = []
         self.ask_positions: list[Position] = []
         """Position of each question's first tick."""
+        self.collided_at: list[Position] = []
         self.mid_asks = 0
         """Questions of the mid level among them."""
         self.ticks = 0
@@ -169,9 +170,11 @@ class Episode(ABC):
             self.ask_positions.append(self.simulation.position)
             self.mid_asks += decision.asks_at == MID
         self.asking = decision.asking
+        if self.simulation.collisions > len(self.collided_at):
+            self.collided_at.append(self.simulation.position)
         self.on_tick(record)
         if record.tick % self.trail_stride == 0:
-            self.trail.append(self.simulation.position)
+            self.trail.append(self.simulation.pose)
         if record.tick % self.ticks_per_second == 0:
             self.on_second(record)
 

@@ -16,14 +16,14 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Pursue
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
-from kurt2rt.experiments.lockstep.drive_row import DriveRow, rounded_places
+from kurt2rt.experiments.lockstep.drive_row import DriveRow, rounded_places, rounded_poses
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.faulty_sensor import SensorBreak
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
-from simbridge.contracts.simulation import Position, Simulation
+from simbridge.contracts.simulation import Simulation
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +114,6 @@ class ExamRun(Episode):
         if task.exam.start == "in_sight":
             self.reposition(in_sight=True)
         self._setup = setup
-        self._collision_positions: list[Position] = []
         self._action: str | None = None
         self._action_changes = self._stuck_times = self._first_question = self._first_collision = 0
         self._alarm = ""
@@ -134,8 +133,7 @@ class ExamRun(Episode):
         Raises LessonLostError if the robot refused a behaviour.
         """
         require_carried_out(record, self.task)
-        if self.simulation.collisions > len(self._collision_positions):
-            self._collision_positions.append(self.simulation.position)
+        if self.collided_at:
             self._first_collision = self._first_collision or record.tick
         if self.ask_positions:
             self._first_question = self._first_question or record.tick
@@ -177,11 +175,11 @@ class ExamRun(Episode):
             first_question_s=self._first_question * self.period_s,
             first_collision_s=self._first_collision * self.period_s,
             action_changes_per_s=self._action_changes / duration_s,
-            trail=rounded_places(self.trail),
+            trail=rounded_poses(self.trail),
             asked_at=rounded_places(self.ask_positions),
             alarm=self._alarm,
             findings={name: float(value) for name, value in metric.findings.items()},
-            collided_at=rounded_places(self._collision_positions),
+            collided_at=rounded_places(self.collided_at),
             least_progress=self.task.metric.least_progress(simulation, self.task.exam.duration_s),
         )
 

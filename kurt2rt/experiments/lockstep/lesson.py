@@ -28,7 +28,7 @@ from kurt2rt.platform.tick_timer import TickTimer
 from kurt2rt.runtime import Runtime
 from kurt2rt.teacher.scripted.build import build_teacher
 from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
-from simbridge.contracts.simulation import Position, Simulation
+from simbridge.contracts.simulation import Pose, Position, Simulation
 
 _AGREEMENT_EVERY_S = 10
 
@@ -92,8 +92,9 @@ class TrainingResult:
     """RLAs of the basic level."""
     growth: tuple[int, ...]
     """Number of RLAs after each second of teaching."""
-    trail: tuple[Position, ...]
+    trail: tuple[Pose, ...]
     ask_positions: tuple[Position, ...]
+    collided_at: tuple[Position, ...]
     timer: TickTimer = field(compare=False, repr=False)
     """Durations of the last ticks on the machine of the run."""
     progress: float = 0.0
@@ -293,6 +294,7 @@ class TrainingRun(Episode):
             growth=tuple(self._growth),
             trail=tuple(self.trail),
             ask_positions=tuple(self.ask_positions),
+            collided_at=tuple(self.collided_at),
             timer=runtime.timer,
             progress=self.metric.progress,
             unit=self.metric.unit,

@@ -16,10 +16,10 @@ from kurt2rt.core.rla.statistics import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teacher_settings import SUPERHUMAN
 from kurt2rt.experiments.lockstep.curriculum import Report
-from kurt2rt.experiments.lockstep.drive_row import Place, rounded_places
+from kurt2rt.experiments.lockstep.drive_row import Place, rounded_poses
 from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
-from kurt2rt.experiments.lockstep.trails import draw_trail
+from kurt2rt.experiments.lockstep.trails import START, draw_way
 from kurt2rt.experiments.navigation.exam import GoalOutcome, GoalsRun, choose_goals
 from kurt2rt.experiments.navigation.guided_tour import (
     HOME,
@@ -29,7 +29,7 @@ from kurt2rt.experiments.navigation.guided_tour import (
     street_tracker,
 )
 from kurt2rt.experiments.route.study import basic_task_of, streets_of
-from kurt2rt.experiments.study.figures import START, SavedFigure, save
+from kurt2rt.experiments.study.figures import SavedFigure
 from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.report import tell_with_report
@@ -47,8 +47,9 @@ from kurt2rt.experiments.study.table import (
     targets_table,
 )
 from kurt2rt.knowledge.journal.loading import copy_knowledge, read_lessons
+from kurt2rt.platform.save_figure import save_figure
 from kurt2rt.runtime import RuntimeOptions
-from simbridge.contracts.simulation import SimulationFactory
+from simbridge.contracts.simulation import Pose, SimulationFactory
 
 _BESIDE_M = 0.15
 
@@ -61,7 +62,7 @@ class ErrandsOutcome(Outcome, TourCounts):
     named: dict[str, Place]
     """Position of each name: right of the middle of its street."""
     errands: tuple[GoalOutcome, ...]
-    trail: tuple[Place, ...]
+    trail: tuple[Pose, ...]
     """Trail of the errands."""
 
     def good(self, detour_at_most: float) -> int:
@@ -118,7 +119,7 @@ class NavigationJob(StudyJob):
             ways_in_all=sum(len(town.on_from(street)) for street in town.streets),
             named={name: _shown_at(street) for name, street in led.named.items()},
             errands=errands,
-            trail=rounded_places(run.trail),
+            trail=rounded_poses(run.trail),
         )
 
 
@@ -269,11 +270,10 @@ def _draw_errands(factory: SimulationFactory, world: str, outcome: ErrandsOutcom
     """Draw the tour and the drives of one robot in a world, and write the picture to `path`. Raises OSError."""
     figure = Figure(figsize=(7.2, 8.0), layout="constrained")
     axes = figure.subplots()
-    factory.draw(axes, world)
     label = f"led about, {outcome.teaching_s:.0f} s"
     axes.plot([x for x, _ in outcome.led], [y for _, y in outcome.led], color=_LED, lw=0.8, zorder=2, label=label)
     goals = len(outcome.errands)
-    draw_trail(axes, outcome.trail, f"errands without a teacher, {goals} goals", width=0.9)
+    draw_way(axes, factory, world, outcome.trail, label=f"errands without a teacher, {goals} goals")
     meant = {each.goal: each.reached for each in outcome.errands}
     for name, (x_m, y_m) in outcome.named.items():
         if name == HOME:
@@ -290,4 +290,4 @@ def _draw_errands(factory: SimulationFactory, world: str, outcome: ErrandsOutcom
         fontsize="medium",
     )
     figure.legend(loc="outside lower center", ncols=3, fontsize="small", frameon=False)
-    save(figure, path)
+    save_figure(figure, path)

@@ -1,6 +1,7 @@
 """Figures of the paper, drawn from our results, and one figure of drives for each task."""
 
 from collections.abc import Iterator, Sequence
+from contextlib import closing
 from pathlib import Path
 
 import matplotlib as mpl
@@ -9,23 +10,17 @@ from matplotlib.figure import Figure
 
 from kurt2rt.core.task_settings import PaperResult
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict, label_of
-from kurt2rt.experiments.lockstep.trails import legend_below
+from kurt2rt.experiments.lockstep.trails import START, draw_drive, legend_below
 from kurt2rt.experiments.paper.study import GrowthStudy, PaperStudy
-from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of, save
+from kurt2rt.experiments.study.figures import SavedFigure, panels_of
 from kurt2rt.experiments.study.table import collisions_text
+from kurt2rt.platform.save_figure import save_figure
 from simbridge.contracts.simulation import SimulationFactory
 
 _COLUMNS = 3
 _MOST_UNSEEN = 1
 """Generated worlds in the picture of a task."""
 _SUCCESS_WORDS = {ExamVerdict.PASSED: "success", ExamVerdict.FAILED: "no success"}
-
-
-def _draw_eight(factory: SimulationFactory, drive: DriveRow, path: Path) -> None:
-    figure, (axes,) = panels_of(1, 1, (7.0, 6.0))
-    draw_drive(axes, factory, drive)
-    legend_below(axes, columns=4)
-    save(figure, path)
 
 
 def _draw_drives(factory: SimulationFactory, drives: Sequence[DriveRow], path: Path) -> None:
@@ -35,7 +30,7 @@ def _draw_drives(factory: SimulationFactory, drives: Sequence[DriveRow], path: P
         draw_drive(axes, factory, drive)
         axes.set_title(_format_drive(drive), fontsize="medium")
         legend_below(axes, columns=2)
-    save(figure, path)
+    save_figure(figure, path)
 
 
 def _format_drive(drive: DriveRow) -> str:
@@ -70,15 +65,16 @@ def _draw_growth(studies: Sequence[GrowthStudy], paper: PaperResult, path: Path)
     panels[0].set_ylabel("RLAs")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize="small", frameon=False)
-    save(figure, path)
+    save_figure(figure, path)
 
 
 def _draw_testing_ground(factory: SimulationFactory, world: str, path: Path) -> None:
     figure = Figure(figsize=(5.6, 6.0), layout="constrained")
     axes = figure.subplots()
     factory.draw(axes, world)
-    factory.draw_robot(axes, world)
-    save(figure, path)
+    with closing(factory.open(world, 1, "exam")) as simulation:
+        factory.draw_robot(axes, simulation.pose, START, "start")
+    save_figure(figure, path)
 
 
 def _draw_worlds(factory: SimulationFactory, worlds: Sequence[str], path: Path) -> None:
@@ -86,7 +82,7 @@ def _draw_worlds(factory: SimulationFactory, worlds: Sequence[str], path: Path) 
     for axes, world in zip(panels, worlds, strict=True):
         factory.draw(axes, world)
         axes.set_title(f"World {label_of(world)}" if len(world) == 1 else f"{world.capitalize()} world")
-    save(figure, path)
+    save_figure(figure, path)
 
 
 def draw_figures(study: PaperStudy, factory: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
@@ -131,7 +127,7 @@ def draw_figures(study: PaperStudy, factory: SimulationFactory, folder: Path) ->
         drive = robot.drives[0]
         if each.of.settings.task == paper.eight:
             path = folder / "fig7.png"
-            _draw_eight(factory, drive, path)
+            _draw_drives(factory, [drive], path)
             yield SavedFigure(
                 path,
                 "Fig. 7: the eight round two columns",

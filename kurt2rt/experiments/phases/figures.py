@@ -13,8 +13,9 @@ from kurt2rt.experiments.lockstep.drive_row import label_of
 from kurt2rt.experiments.lockstep.teacher_workload import SAID
 from kurt2rt.experiments.phases.results import MEASURES, PhasesStudy, exams_of, paired
 from kurt2rt.experiments.phases.steps import BRANCHES, PATH, Step
-from kurt2rt.experiments.study.figures import SavedFigure, save
+from kurt2rt.experiments.study.figures import SavedFigure
 from kurt2rt.experiments.study.intervals import collisions_in_10_min, wilson_interval
+from kurt2rt.platform.save_figure import save_figure
 
 _LOAD_COLOURS = {"lessons": "#1f6fb2", "corrections": "#d1495b", "rewards": "#2e8540", "appraisals": "#b8860b"}
 _TEACHING = (Step.PHASE_2, Step.PHASE_3, Step.PHASE_4, Step.PHASE_5)
@@ -83,7 +84,7 @@ def _draw_stages(study: PhasesStudy, names: Sequence[Step], path: Path) -> None:
     for axes in (success, collisions):
         axes.grid(alpha=0.25)
     figure.legend(loc="outside lower center", ncols=5, fontsize="small", frameon=False)
-    save(figure, path)
+    save_figure(figure, path)
 
 
 def _bar(axes: Axes, at: float, value: float, span: tuple[float, float], colour: str, label: str | None) -> None:
@@ -123,7 +124,7 @@ def _draw_load(study: PhasesStudy, path: Path) -> None:
     axes.set_ylabel("said in a minute")
     axes.grid(alpha=0.25)
     figure.legend(loc="outside lower center", ncols=4, fontsize="small", frameon=False)
-    save(figure, path)
+    save_figure(figure, path)
 
 
 def _draw_agreement(study: PhasesStudy, path: Path) -> None:
@@ -145,7 +146,7 @@ def _draw_agreement(study: PhasesStudy, path: Path) -> None:
     axes.set_ylabel("agreement")
     axes.grid(alpha=0.25)
     axes.legend(loc="lower right", fontsize="small", frameon=False)
-    save(figure, path)
+    save_figure(figure, path)
 
 
 def _draw_intact(study: PhasesStudy, path: Path) -> None:
@@ -169,4 +170,4 @@ def _draw_intact(study: PhasesStudy, path: Path) -> None:
         axes.grid(alpha=0.25)
     panels[0].set_ylabel("after")
     figure.legend(loc="outside lower center", ncols=5, fontsize="small", frameon=False)
-    save(figure, path)
+    save_figure(figure, path)

@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 
 from kurt2rt.core.task_settings import PaperResult, TaskSettings
 from kurt2rt.experiments.lockstep.drive_row import Place
-from kurt2rt.experiments.lockstep.trails import ASKED, columns, legend_below
+from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_drive, legend_below
 from kurt2rt.experiments.route.route_monitor import LAYERS
 from kurt2rt.experiments.route.study import RouteJob, RouteOutcome, Routes, RouteTasks
-from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of, save
+from kurt2rt.experiments.study.figures import SavedFigure, panels_of
 from kurt2rt.experiments.study.intervals import Rate, right_rate
 from kurt2rt.experiments.study.report import TO_SEE_LESSONS, spans, tell_with_report
 from kurt2rt.experiments.study.study_plan import StudyPlan, read_groups
@@ -35,6 +35,7 @@ from kurt2rt.experiments.study.table import (
     to_text,
     total,
 )
+from kurt2rt.platform.save_figure import save_figure
 from simbridge.contracts.simulation import SimulationFactory
 
 _ROUTE = "#e8a33d"
@@ -67,7 +68,7 @@ def draw_route(factory: SimulationFactory, outcome: RouteOutcome, path: Path) ->
     _draw(axes, factory, outcome)
     axes.set_title(_told(outcome), fontsize="medium")
     legend_below(axes, columns=3)
-    save(figure, path)
+    save_figure(figure, path)
 
 
 def _draw_routes(factory: SimulationFactory, outcomes: Sequence[RouteOutcome], path: Path) -> None:
@@ -76,12 +77,12 @@ def _draw_routes(factory: SimulationFactory, outcomes: Sequence[RouteOutcome], p
     for axes, outcome in zip(panels, outcomes, strict=True):
         _draw(axes, factory, outcome)
         axes.set_title(_told(outcome), fontsize="small")
-    save(figure, path)
+    save_figure(figure, path)
 
 
 def _draw(axes: Axes, factory: SimulationFactory, outcome: RouteOutcome) -> None:
     # Questions are not drawn: wrong decisions have their colour.
-    draw_drive(axes, factory, outcome.drive.model_copy(update={"asked_at": ()}), width=0.8)
+    draw_drive(axes, factory, outcome.drive.model_copy(update={"asked_at": ()}))
     route = [*outcome.route, outcome.route[0]]
     label: str | None = f"the route, {len(outcome.route)} decisions"
     for number, (here, there) in enumerate(pairwise(route), start=1):

@@ -14,12 +14,13 @@ from optuna.trial import FrozenTrial
 from kurt2rt.experiments.search.plan import PRESSES_OF_A_COLLISION, SHIPPED, SearchPlan, effort, exams_of, label_of
 from kurt2rt.experiments.search.settings import Objective, Robots
 from kurt2rt.experiments.search.trials import CheckedSettings, CheckResult, SearchTrials, best_trials, finished
-from kurt2rt.experiments.study.figures import SavedFigure, save
+from kurt2rt.experiments.study.figures import SavedFigure
 from kurt2rt.experiments.study.intervals import Rate
 from kurt2rt.experiments.study.jobs import ExaminedOutcome
 from kurt2rt.experiments.study.report import Section, spans, tell_with_report
 from kurt2rt.experiments.study.table import Table, Told, of_text, rate_text, table_of
 from kurt2rt.platform.durable_files import write_durably
+from kurt2rt.platform.save_figure import save_figure
 
 _SHOWN = 5
 _DIGITS = 4
@@ -106,7 +107,7 @@ def _draw_trials(plan: SearchPlan, trials: list[FrozenTrial], path: Path) -> Sav
         unused.remove()
     for first in axes[:panels:_COLUMNS]:
         first.set_ylabel("score")
-    save(figure, path)
+    save_figure(figure, path)
     return SavedFigure(
         path,
         "Trials",

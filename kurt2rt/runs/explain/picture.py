@@ -11,13 +11,13 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.core.decision.decision import ASKING, DecisionCause
 from kurt2rt.core.perception.definition import AVERAGED
 from kurt2rt.core.perception.sensor_words import words_for
+from kurt2rt.platform.save_figure import save_figure
 from kurt2rt.runs.explain.attribution import distance_attribution
 from kurt2rt.runs.explain.bars import draw_differences, draw_nearness
 from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS, TEACHER, colours_of, ink_on
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
 from kurt2rt.runs.explain.facts import DecisionFacts, RlaFacts
 from kurt2rt.runs.explain.reasons import format_reasons, headline
-from kurt2rt.runs.explain.save_figure import save_figure
 from kurt2rt.runs.explain.sensor_view import LEGEND, SensorView, draw_sensor_view
 from kurt2rt.runs.explain.sentences import (
     format_counterfactuals,

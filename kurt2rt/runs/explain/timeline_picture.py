@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from kurt2rt.platform.save_figure import ShownFigure, save_figure
 from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS, TEACHER, colours_of
-from kurt2rt.runs.explain.save_figure import ShownFigure, save_figure
 from kurt2rt.runs.explain.timeline import Kind, Sample, Stretch, Timeline, format_summary, kind_intervals
 
 _KNOWN, _LIMIT = "#e3f1e6", "#3f9b5c"

@@ -6,7 +6,7 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-_DPI = 110
+_DPI = 120
 _NO_DATE: dict[str, dict[str, None]] = {
     ".png": {"Software": None},
     ".svg": {"Date": None},
