@@ -1,9 +1,9 @@
 """Groups of actions that a person can tell apart by watching the robot."""
 
+import math
 from collections.abc import Mapping
 
 from behaviors.repertoire_settings import (
-    ActionSettings,
     KeepDistanceAction,
     MotorAction,
     RepertoireSettings,
@@ -11,6 +11,7 @@ from behaviors.repertoire_settings import (
 )
 from config.settings import load_settings
 from config.settings_files import find_config
+from hal.robot import WheelSpeeds
 
 AHEAD, BACK, STAND = "ahead", "back", "stand"
 _AHEAD_BELOW, _SPIN_ABOVE = 0.5, 2.0
@@ -31,19 +32,27 @@ def action_groups(repertoire: str) -> Mapping[str, str]:
         config.settings.SettingsError: for a missing or invalid repertoire.
     """
     actions = load_settings(find_config("repertoires", repertoire), RepertoireSettings).actions
-    return {action.name: _group_of(action) for action in actions}
+    speeds = usual_speeds(repertoire)
+    return {each.name: _group_of_speeds(*speeds[each.name]) if each.name in speeds else each.name for each in actions}
 
 
-def _group_of(action: ActionSettings) -> str:
-    match action:
-        case MotorAction(left_m_s=left_m_s, right_m_s=right_m_s):
-            return _group_of_speeds(left_m_s, right_m_s)
-        case KeepDistanceAction():
-            return AHEAD
-        case TurnByAngleAction(angle_deg=angle_deg):
-            return f"spin {_side(angle_deg)}"
-        case _:
-            return action.name
+def usual_speeds(repertoire: str) -> Mapping[str, WheelSpeeds]:
+    """Return the usual speeds of the wheels by each action of a repertoire, but for those that were taught themselves.
+
+    Raises:
+        config.settings.SettingsError: for a missing or invalid repertoire.
+    """
+    found: dict[str, WheelSpeeds] = {}
+    for action in load_settings(find_config("repertoires", repertoire), RepertoireSettings).actions:
+        match action:
+            case MotorAction(left_m_s=left_m_s, right_m_s=right_m_s):
+                found[action.name] = WheelSpeeds(left_m_s, right_m_s)
+            case KeepDistanceAction(speed_m_s=speed_m_s):
+                found[action.name] = WheelSpeeds(speed_m_s, speed_m_s)
+            case TurnByAngleAction(angle_deg=angle_deg, speed_m_s=speed_m_s):
+                right_m_s = math.copysign(speed_m_s, angle_deg)
+                found[action.name] = WheelSpeeds(-right_m_s, right_m_s)
+    return found
 
 
 def _group_of_speeds(left_m_s: float, right_m_s: float) -> str:

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from behaviors.action_groups import usual_speeds
 from hal.robot_settings import load_robot_of
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile
@@ -93,9 +94,11 @@ def graph(
     behaviour: Annotated[str | None, typer.Option(help="Only RLAs of this taught behaviour.")] = None,
     at_least: Annotated[
         float, typer.Option(min=0, max=100, metavar="PERCENT", help="Leave out what followed less often.")
-    ] = 5.0,
+    ] = 20.0,
+    task_name: TaskOfTheFile = None,
+    robot_name: RobotName = None,
 ) -> None:
-    """Draw the RLA network: which RLA followed which, in percent; or write it as GraphML.
+    """Draw the RLAs by their actions, and which followed which, in percent; or write GraphML.
 
     For example:
 
@@ -104,7 +107,7 @@ def graph(
     """
     # Late import: networkx is in the extra `simulation`, and every command is loaded where --help is said.
     from kurt2rt.knowledge.graph.graph import FORMATS, drop_rare_edges, read_network
-    from kurt2rt.knowledge.graph.picture import write_network
+    from kurt2rt.runs.explain.network_picture import write_network
 
     refuse_if(out.suffix not in FORMATS, f"{out.name}: give a file that ends with {', '.join(FORMATS)}", "--out")
     with Journal.read_only(file) as journal:
@@ -112,6 +115,7 @@ def graph(
     shown = drop_rare_edges(whole, at_least)
     what = " of ".join(part for part in (f"{len(shown)} RLAs", behaviour) if part)
     title = f"{printable(file.stem)}, level {level}: {what}; numbers: what followed, in % (from {at_least:g} %)"
-    write_network(shown, title, out)
+    name = task_of_file(file, task_name)
+    write_network(shown, title, out, load_robot_of(robot_name, name), usual_speeds(load_task(name).repertoire))
     edges = f"{shown.number_of_edges()} of {whole.number_of_edges()} edges"
     say(f"network  {out}: {len(shown)} of {len(whole)} RLAs, {edges}")

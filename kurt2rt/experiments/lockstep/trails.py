@@ -103,4 +103,12 @@ def columns(places: Sequence[tuple[float, ...]]) -> tuple[list[float], list[floa
 
 def legend_below(axes: Axes, columns: int = 4) -> None:
     """Draw the legend below the floor plan, in so many columns, where it hides no wall."""
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=columns, fontsize="small", frameon=False)
+    axes.legend(
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.1),
+        ncols=columns,
+        fontsize="small",
+        frameon=False,
+        handlelength=1.2,
+        columnspacing=1.0,
+    )

@@ -31,7 +31,8 @@ def read_network(journal: Journal, *, level: str = BASIC, behaviour: str | None 
     Raises KnowledgeError for a damaged file, and if it has no such RLA.
     """
     _, system, statistics = read_content(journal)
-    features = journal.binding.levels[level].feature_names if level in journal.binding.levels else ()
+    levels = journal.binding.levels
+    features = levels[level].feature_names if level in levels else journal.binding.feature_names
     network = build_network(system, statistics, level=level, behaviour=behaviour, features=features)
     if not network:
         _refuse(journal, system, level, behaviour)
@@ -49,11 +50,10 @@ def build_network(
     """Return the living RLAs of a level, or of one behaviour of it, and how often they followed each other.
 
     A node has the attributes `level`, `behaviour`, `action` and `uses`; if an end of it was observed, also `ends`
-    (their number) and `ticks` (mean duration); if `features` name a place, also `x_m` and `y_m`. An edge has `times`
-    and `percent`, its share of all successors, those that are not in the network included.
+    (their number) and `ticks` (mean duration), and its condition by the names of `features`. An edge has `times` and
+    `percent`, its share of all successors, those that are not in the network included.
     """
     network: RlaNetwork = nx.DiGraph()
-    place = _place_in(tuple(features))
     for rla in system.rlas_at(level):
         if behaviour is not None and rla.behaviour != behaviour:
             continue
@@ -63,13 +63,11 @@ def build_network(
             behaviour=rla.behaviour,
             action=rla.action,
             uses=statistics.uses.get(rla.rla_id, 0),
+            **dict(zip(features, map(float, rla.condition), strict=False)),
         )
         expectation = statistics.expectations.get(rla.rla_id)
         if expectation is not None and is_valid_for(system, rla.rla_id, expectation, level):
             network.add_node(rla.rla_id, ends=expectation.count, ticks=expectation.ticks)
-        if place is not None:
-            x, y = place
-            network.add_node(rla.rla_id, x_m=rla.condition[x], y_m=rla.condition[y])
     for before, shares in follow_ups(statistics).items():
         _add_edges(network, before, shares, statistics.transitions)
     return network
@@ -97,13 +95,6 @@ def _add_edges(
     for after, percent in shares.items():
         if after in network:
             network.add_edge(before, after, times=times[before, after], percent=percent)
-
-
-def _place_in(features: tuple[str, ...]) -> tuple[int, int] | None:
-    """Return the indices of x and y in a condition; None if it has none."""
-    if "x_m" in features and "y_m" in features:
-        return features.index("x_m"), features.index("y_m")
-    return None
 
 
 def _refuse(journal: Journal, system: RlaSystem, level: str, behaviour: str | None) -> NoReturn:

@@ -1,87 +1,50 @@
-"""Layout of a network in its picture: RLAs that often follow each other are near each other."""
+"""Layout of a network in its picture: at known places, or in groups."""
 
 import math
+from collections.abc import Sequence
 
-import networkx as nx
 import numpy as np
-from numpy.typing import NDArray
 
 from kurt2rt.knowledge.graph.graph import RlaNetwork
 
-Places = dict[int, tuple[float, float]]
+Place = tuple[float, float]
+Places = dict[int, Place]
 """RLA id -> (x, y) in units of the picture."""
 
 APART = 1.0
 """Smallest distance of two RLAs, in units of the picture."""
-_NEAREST = 1.4
-"""Distance of two RLAs of which the one always follows the other."""
-_BETWEEN = 1.6
-"""Distance of parts that no edge joins."""
 _ROOM = 2.5
 """Side of the square that each RLA has on average in a layout by known places."""
-_WEAK = 1.2
-"""Relative increase of the distance for RLAs of which the one hardly ever follows the other."""
+_GAP = 0.7
+"""Room between groups."""
+_ASPECT = 1.7
 
 
-def compute_layout(network: RlaNetwork) -> Places:
-    """Return the place in a drawing of each RLA of a network, by id, at least APART from each other.
-
-    Known places of the RLAs are kept; otherwise the edges make the layout.
-    """
-    nodes = network.nodes
-    known = {rla_id: (nodes[rla_id]["x_m"], nodes[rla_id]["y_m"]) for rla_id in network if "x_m" in nodes[rla_id]}
-    if known and len(known) == len(network):
-        return _push_apart(_in_units(known))
-    parts = sorted(nx.weakly_connected_components(network), key=lambda part: (-len(part), min(part)))
-    return _packed([_by_neighbourhood(network.subgraph(part)) for part in parts])
+def place_known(network: RlaNetwork) -> Places:
+    """Return the places that all RLAs of a network have themselves, at least APART from each other; empty without."""
+    known = {rla_id: (node["x_m"], node["y_m"]) for rla_id, node in network.nodes.items() if "x_m" in node}
+    return _push_apart(_in_units(known)) if known and len(known) == len(network) else {}
 
 
-def _by_neighbourhood(network: RlaNetwork) -> Places:
-    """Return places whose distances are like those along edges (Kamada and Kawai 1989)."""
-    ids = sorted(network)
-    if len(ids) < 2:
-        return dict.fromkeys(ids, (0.0, 0.0))
-    ways: nx.Graph[int] = nx.Graph()
-    for before, after in network.edges:
-        length = _NEAREST * (1.0 + _WEAK * (1.0 - network.edges[before, after]["percent"] / 100.0))
-        if not ways.has_edge(before, after) or ways.edges[before, after]["length"] > length:
-            ways.add_edge(before, after, length=length)
-    lengths = dict(nx.all_pairs_dijkstra_path_length(ways, weight="length"))
-    laid = nx.kamada_kawai_layout(ways, dist=lengths)
-    places = _landscape(np.array([laid[rla_id] for rla_id in ids]))
-    # networkx scales its layout to a square of side 2.
-    drawn = np.linalg.norm(places[:, None] - places[None, :], axis=2).sum()
-    places *= sum(lengths[one][other] for one in ids for other in ids) / drawn
-    return _push_apart({rla_id: (float(x), float(y)) for rla_id, (x, y) in zip(ids, places, strict=True)})
-
-
-def _packed(parts: list[Places]) -> Places:
-    """Return one layout: the largest part on top, the others in rows beneath it."""
-    packed: Places = {}
-    width = right = 0.0
-    top = bottom = 0.0
-    for part in parts:
-        (low_x, high_x), (low_y, high_y) = span(part)
-        if right > 0 and right + high_x - low_x > width:
-            right, top = 0.0, bottom - _BETWEEN
-        packed |= {rla_id: (right + x - low_x, top + y - high_y) for rla_id, (x, y) in part.items()}
-        right += high_x - low_x + _BETWEEN
-        width, bottom = max(width, right - _BETWEEN), min(bottom, top - (high_y - low_y))
-    return packed
+def place_groups(groups: Sequence[Sequence[int]]) -> Places:
+    """Return the places of the ids of each group, in rows of the group; groups stand in rows of the picture."""
+    places: Places = {}
+    widest = math.sqrt(1.3 * _ASPECT * sum(map(len, groups))) + 2
+    left = top = bottom = 0.0
+    for ids in groups:
+        wide = math.ceil(math.sqrt(_ASPECT * len(ids)))
+        if left and left + wide > widest:
+            left, top = 0.0, bottom - _GAP
+        places |= {rla_id: (left + at % wide, top - at // wide) for at, rla_id in enumerate(ids)}
+        bottom = min(bottom, top - math.ceil(len(ids) / wide))
+        left += min(wide, len(ids)) + _GAP
+    return places
 
 
 def span(places: Places) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the extent of a layout, (lowest, highest) of x and of y; it has at least one place."""
     xs, ys = [x for x, _ in places.values()], [y for _, y in places.values()]
     return (min(xs), max(xs)), (min(ys), max(ys))
-
-
-def _landscape(places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the places, shape (n, 2), rotated so that they are wider than high."""
-    centred = places - places.mean(axis=0)
-    _, _, axes = np.linalg.svd(centred, full_matrices=False)
-    turned: NDArray[np.float64] = centred @ axes.T
-    return turned
 
 
 def _in_units(known: Places) -> Places:

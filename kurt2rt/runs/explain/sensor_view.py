@@ -19,6 +19,7 @@ _AVERAGE = "#7a4fa3"
 _BODY = "#f7c948"
 _HALF_BEAM_RAD = 0.085
 _MARGIN_M = 0.10
+_MOTION_S, _MOTION_STEPS = 1.6, 16
 _ARROW_S = 1.0
 """Time span of the arrows of the wheels."""
 
@@ -45,8 +46,11 @@ class SensorView:
     """Colour of the arrows."""
 
 
-def draw_sensor_view(axes: Axes, robot: RobotSettings, view: SensorView) -> None:
-    """Draw one situation from above, in m: body, beams, readings and wheel speeds."""
+def draw_sensor_view(axes: Axes, robot: RobotSettings, view: SensorView, wall_width: float = 3.2) -> None:
+    """Draw one situation from above, in m: body, beams, readings and wheel speeds.
+
+    `wall_width`: of the lines where a sensor sees something, in points.
+    """
     law = robot.infrared
     length_m, width_m = robot.geometry.outline_length_m, robot.geometry.outline_width_m
     reach_m = law.far_m + _MARGIN_M
@@ -56,7 +60,7 @@ def draw_sensor_view(axes: Axes, robot: RobotSettings, view: SensorView) -> None
     axes.set_axis_off()
     for sensor in law.sensors:
         if sensor.name in view.counts:
-            _sensor(axes, law, sensor, view)
+            _sensor(axes, law, sensor, view, wall_width)
     axes.add_patch(
         Rectangle((-width_m / 2, -length_m / 2), width_m, length_m, facecolor=_BODY, edgecolor=INK, zorder=4)
     )
@@ -69,7 +73,26 @@ def draw_sensor_view(axes: Axes, robot: RobotSettings, view: SensorView) -> None
                 axes.annotate("", (x_m, speed_m_s * _ARROW_S), (x_m, 0.0), arrowprops=arrow, zorder=8)
 
 
-def _sensor(axes: Axes, law: InfraredSettings, sensor: SensorSettings, view: SensorView) -> None:
+def draw_motion(axes: Axes, robot: RobotSettings, wheels: WheelSpeeds, colour: str) -> None:
+    """Draw the way of the robot's nose by fixed set points, as an arrow; of a robot that stands, a square."""
+    if not any(wheels):
+        axes.plot(0.0, 0.0, "s", markersize=6, color=colour, zorder=8)
+        return
+    nose_m, speed_m_s = robot.geometry.outline_length_m / 2, (wheels.left_m_s + wheels.right_m_s) / 2
+    turn_rad_s = (wheels.right_m_s - wheels.left_m_s) / robot.geometry.effective_track_m
+    ahead_m = left_m = 0.0
+    way = []
+    for step in range(_MOTION_STEPS + 1):
+        heading_rad = turn_rad_s * _MOTION_S * step / _MOTION_STEPS
+        way.append((-left_m - nose_m * math.sin(heading_rad), ahead_m + nose_m * math.cos(heading_rad)))
+        ahead_m += speed_m_s * math.cos(heading_rad) * _MOTION_S / _MOTION_STEPS
+        left_m += speed_m_s * math.sin(heading_rad) * _MOTION_S / _MOTION_STEPS
+    axes.plot(*zip(*way, strict=True), color=colour, linewidth=2.0, zorder=8)
+    arrow = {"arrowstyle": "-|>", "color": colour, "linewidth": 2.0, "mutation_scale": 7, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", way[-1], way[-2], arrowprops=arrow, zorder=8)
+
+
+def _sensor(axes: Axes, law: InfraredSettings, sensor: SensorSettings, view: SensorView, wall_width: float) -> None:
     """Draw the beam of a sensor, the wall that it sees, and its average."""
     counts, differs = view.counts[sensor.name], sensor.name in view.differing
     distance_m, sees = law.distance_m(counts), _is_detected(law, counts)
@@ -78,7 +101,7 @@ def _sensor(axes: Axes, law: InfraredSettings, sensor: SensorSettings, view: Sen
     fan = [_along(sensor, 0.0), *edge]
     axes.add_patch(Polygon(fan, facecolor=colour, edgecolor="none", alpha=0.55 if differs else 0.8, zorder=2))
     if sees:
-        axes.plot(*zip(*edge, strict=True), color=_WALL, linewidth=3.2, solid_capstyle="round", zorder=5)
+        axes.plot(*zip(*edge, strict=True), color=_WALL, linewidth=wall_width, solid_capstyle="round", zorder=5)
     if differs:
         text = f"{distance_m * 100:.0f} cm" if sees else "nothing"
         place = _along(sensor, distance_m + 0.1 if sees else 0.75 * distance_m)

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import networkx as nx
 import numpy as np
 
 from kurt2rt.core.rla.condition import Space
@@ -10,7 +9,6 @@ from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Expectation, Statistics, pack
 from kurt2rt.knowledge.graph.graph import RlaNetwork, build_network, drop_rare_edges, read_network
-from kurt2rt.knowledge.graph.picture import write_network
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from tests.core.rla.helpers import created
@@ -54,34 +52,6 @@ def test_drop_rare_edges_drops_unused_rlas() -> None:
     network = drop_rare_edges(build_network(system(), DROVE), 20.0)
     assert edges(network) == {(1, 2): (9, 90.0), (2, 1): (8, 80.0), (3, 3): (1, 100.0)}
     assert sorted(network) == [1, 2, 3]
-
-
-def test_write_network_graphml_is_read_back(tmp_path: Path) -> None:
-    network = build_network(system(), DROVE)
-    write_network(network, "a title", tmp_path / "made" / "network.graphml")
-    again = nx.read_graphml(tmp_path / "made" / "network.graphml", node_type=int)
-    assert (dict(again.nodes), dict(again.edges), again.graph["title"]) == (
-        dict(network.nodes),
-        dict(network.edges),
-        "a title",
-    )
-
-
-def test_write_network_picture_is_reproducible_with_labels(tmp_path: Path) -> None:
-    pictures = [tmp_path / f"{name}.svg" for name in ("first", "second")]
-    for picture in pictures:
-        write_network(build_network(system(), DROVE), "the title", picture)
-    text, again = (picture.read_text(encoding="utf-8") for picture in pictures)
-    assert text == again
-    for shown in ("the title", "left: 2 RLAs", "right: 2 RLAs", ">90<", ">80<", ">forward<", ">4<"):
-        assert shown in text, shown
-    assert text.count('id="PathCollection_') == 2  # the nodes of each panel
-    assert ">10<" not in text  # from the one behaviour to the other a command led
-
-
-def test_write_network_without_uses_is_a_picture(tmp_path: Path) -> None:
-    write_network(build_network(system(), Statistics()), "just taught", tmp_path / "network.svg")
-    assert ">3<" in (tmp_path / "network.svg").read_text(encoding="utf-8")
 
 
 def test_read_network_without_rlas_is_refused(path: Path) -> None:
