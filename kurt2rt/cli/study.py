@@ -269,7 +269,7 @@ class _Certify(JobOptions):
         ),
     ] = 0.0
     pictures: Annotated[
-        int, typer.Option(min=0, max=100, metavar="N", help="Number of worst runs to draw, at most.")
+        int, typer.Option(min=0, max=100, metavar="N", help="Number of runs to draw, the worst first.")
     ] = 6
     engine: Annotated[
         Engine,

@@ -74,8 +74,8 @@ def _ever_shorter(told: "Told", short: "Table", files: list[str]) -> Iterator[li
     missed_first = sorted(short.rows, key=lambda row: "MISSED" not in row)
     note = f"Not judged: {told.not_judged[0]}" if told.not_judged else short.note
     to_copy = [Text(line, no_wrap=True) for line in told.lines[:1]]
-    yield [told.sentence, as_rich(replace(short, note=note)), *to_copy, *files]
+    yield [told.sentence, as_rich(replace(short, title="", note=note)), *to_copy, *files]
     for left_out in range(1, len(short.rows) + 1):
         kept = tuple(missed_first[:-left_out])
         text = f"More rows in the report: {left_out}. {note}".rstrip()
-        yield [told.sentence, as_rich(replace(short, rows=kept, note=text)), *to_copy, *files]
+        yield [told.sentence, as_rich(replace(short, title="", rows=kept, note=text)), *to_copy, *files]

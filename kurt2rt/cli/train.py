@@ -20,8 +20,9 @@ from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.core.task_settings import taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_actions
 from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
+from kurt2rt.experiments.lockstep.drive_row import label_of
 from kurt2rt.experiments.lockstep.lesson import LessonCounts
-from kurt2rt.experiments.study.exam_tables import curriculum_as_data, lesson_table, seeds_tables, success_text
+from kurt2rt.experiments.study.exam_tables import by_world, curriculum_as_data, lesson_table, seeds_tables, success_text
 from kurt2rt.experiments.study.jobs import require_places
 from kurt2rt.experiments.study.seeds import forget_lost_robots, forget_result, make_plan, read_results
 from kurt2rt.experiments.study.study_plan import EngineRequest
@@ -133,6 +134,7 @@ def _one_seed(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
 
 def _many_seeds(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
     # Not at the top: reports are an extra, and one robot is taught without it.
+    from kurt2rt.experiments.study.figures import draw_passed
     from kurt2rt.experiments.study.report import tell_with_report
 
     parts = job_parts(setup.robot, out)
@@ -144,8 +146,11 @@ def _many_seeds(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
         data = [curriculum_as_data(each.lesson, each.drives, task) for each in robots]
         told = {"task": task.name, "teacher": task.teaching.profile.name, "robots": data}
         tables = list(seeds_tables(robots, task))
-        passed = success_text([drive for each in robots for drive in each.drives])
-        result = Told(tables, f"Exams passed without a teacher: {passed}.", short=tables[2], data=told)
-        return tell_with_report(out, f"KURT2: {task.name} taught to {len(robots)} robots", result, setup.command)
+        drives = [drive for each in robots for drive in each.drives]
+        worlds = {f"world {label_of(each.world)}": each.rows for each in by_world(None, drives)}
+        picture = draw_passed(worlds, f"{len(robots)} robots, one for each seed.", out / f"{task.name}.png")
+        result = Told(tables, f"Exams passed without a teacher: {success_text(drives)}.", short=tables[2], data=told)
+        title = f"KURT2: {task.name} taught to {len(robots)} robots"
+        return tell_with_report(out, title, result, setup.command, [picture])
 
     run_study(plan, options, tell)

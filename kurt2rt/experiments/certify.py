@@ -16,14 +16,14 @@ from kurt2rt.experiments.lockstep.drive_row import PLACES, DriveRow, label_of
 from kurt2rt.experiments.lockstep.engine import ON_BUS, BatchDiffersError, Engine, Engines, choose_witnesses
 from kurt2rt.experiments.lockstep.exam import ExamSetup
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, parse_break
-from kurt2rt.experiments.lockstep.trails import draw_drive, legend_below
+from kurt2rt.experiments.lockstep.trails import ASKED, START, TRAIL, draw_drive, draw_marks, draw_trail, legend_below
 from kurt2rt.experiments.study.exam_tables import WORLD
 from kurt2rt.experiments.study.figures import SavedFigure, panels_of
 from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of, wilson_interval
 from kurt2rt.experiments.study.jobs import SEED, JobParts, Outcome, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash
-from kurt2rt.experiments.study.report import tell_with_report
-from kurt2rt.experiments.study.study_plan import BusWitnessJob, StudyPlan
+from kurt2rt.experiments.study.report import spans, tell_with_report
+from kurt2rt.experiments.study.study_plan import BusWitnessJob, StudyPlan, group_by
 from kurt2rt.experiments.study.table import (
     Column,
     Table,
@@ -295,15 +295,13 @@ def _is_clean(run: DriveRow) -> bool:
 
 
 def worst_of(drives: Sequence[DriveRow], count: int) -> list[DriveRow]:
-    """Return so many runs at most: those with most collisions, then those stopped, stuck or asking soonest.
-
-    Runs without any of these are left out.
-    """
+    """Return so many runs: those with most collisions, then those stopped, stuck or asking soonest, then others."""
 
     def badness(run: DriveRow) -> tuple[float, ...]:
-        return -run.collisions, not run.ended_early, run.duration_s, run.first_question_s or math.inf, run.seed
+        first = run.first_question_s or math.inf
+        return -run.collisions, not run.ended_early, _is_clean(run), run.duration_s, first, run.seed
 
-    return sorted((each for each in drives if not _is_clean(each)), key=badness)[:count]
+    return sorted(drives, key=badness)[:count]
 
 
 def _clustered(counts: Sequence[int], hours: Sequence[float]) -> Rate:
@@ -402,6 +400,30 @@ def _format_witnesses(plan: StudyPlan[Certified]) -> str:
     return f"{len(plan.witnesses)} runs were driven on the CAN bus too, with equal results{left}."
 
 
+def draw_together(jobs: Sequence[BlockJob], drives: Sequence[DriveRow]) -> SavedFigure:
+    """Draw where the runs of the picture jobs drove, by world, stamped with the result of all; return runs.png.
+
+    `drives`: of all runs. Raises StudyError, OSError.
+    """
+    clean, folder = sum(map(_is_clean, drives)), jobs[0].results.folder
+    worlds = group_by([job.results.read(job, BlockOutcome).drives[0] for job in jobs], lambda drive: drive.world)
+    figure, panels = panels_of(len(worlds), 3, (4.6, 5.0))
+    for axes, (world, rows) in zip(panels, worlds, strict=True):
+        jobs[0].factory.draw(axes, world)
+        for drive in rows:
+            draw_trail(axes, drive.trail, "", colour=TRAIL if _is_clean(drive) else ASKED)
+            draw_marks(axes, drive.asked_at, drive.collided_at)
+            jobs[0].factory.draw_robot(axes, drive.trail[0], START)
+        axes.set_title(f"World {label_of(world)}: {spans(sorted(each.seed for each in rows))}")
+    stamp = f"{of_text(clean, len(drives))}, at least {wilson_interval(clean, len(drives))[0]:.0%}"
+    colour = START if clean == len(drives) else ASKED
+    box = {"boxstyle": "round,pad=0.5", "facecolor": "white", "edgecolor": colour, "linewidth": 3.0}
+    figure.suptitle(stamp, fontsize=20, fontweight="bold", color=colour, bbox=box)
+    save_figure(figure, folder / "runs.png")
+    caption = f"{len(jobs)} of {len(drives)} runs, the worst first; in red what was not without fault."
+    return SavedFigure(folder / "runs.png", "Where it drove", caption)
+
+
 def draw_worst(jobs: Iterable[BlockJob], commands: Sequence[str]) -> Iterator[SavedFigure]:
     """Draw the run of each picture job into the folder of the results and yield it: run-NUMBER.png.
 
@@ -429,7 +451,8 @@ def tell(plan: StudyPlan[Certified], again: Sequence[BlockJob], words: Sequence[
     """
     task, knowledge, _, runs = plan.about
     broken = {run.number: run.broken for run in runs}
-    worst = [job.before for job in again if job.before is not None]
+    failing = [job for job in again if job.before is not None and not _is_clean(job.before)]
+    worst = [job.before for job in failing if job.before is not None]
     drives = read_drives(plan)
     summaries = list(summarise(plan, drives))
     commands = []
@@ -449,8 +472,8 @@ def tell(plan: StudyPlan[Certified], again: Sequence[BlockJob], words: Sequence[
         "sunlight are not in it."
     )
     driven_again = (
-        "The worst runs were driven again for their pictures, on the CAN bus and with the same outcome. The line below "
-        "a picture is the command that shows it again."
+        "The runs of the pictures, the worst first, were driven again, on the CAN bus and with the same outcome. The "
+        "line below a picture is the command that shows it again."
     )
     found = [
         {**each.model_dump(exclude=_LEFT_OUT), "broken": broken[each.seed], "command": word}
@@ -462,4 +485,5 @@ def tell(plan: StudyPlan[Certified], again: Sequence[BlockJob], words: Sequence[
     short = _shares_table("Share of the runs", summaries, note="The worst run once more:" if commands else "")
     told = Told(tables, sentence, (about, *([driven_again] if again else ())), short, lines=commands, data=data)
     title = f"KURT2: certificate of a robot that was taught {task.name}"
-    return tell_with_report(plan.results.folder, title, told, command, list(draw_worst(again, commands)))
+    pictures = [*([draw_together(again, drives)] if again else ()), *draw_worst(failing, commands)]
+    return tell_with_report(plan.results.folder, title, told, command, pictures)

@@ -49,6 +49,7 @@ def test_a_task_of_ones_own_is_taught_examined_and_reported(kurt2rt: CommandLine
         "fig4.png",
         "fig6.png",
         "knowledge/shipped/short_circle-100.knowledge",
+        "passed.png",
         "report.html",
         "results/shipped/short_circle-100.json",
     ]

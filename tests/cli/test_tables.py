@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 
 from kurt2rt.cli.tables import print_told, say
-from kurt2rt.experiments.study.table import Told, Verdict, targets_table
+from kurt2rt.experiments.study.table import Told, Verdict, brief, targets_table
 
 VERDICTS = [
     ((), Verdict(f"exams passed in world {number}", "at least 18 of 20", "20 of 20", number != 37))
@@ -33,6 +33,19 @@ def test_a_terminal_gets_at_most_19_lines_and_each_missed_target(monkeypatch: py
     assert "More rows in the report:" in " ".join(lines)
     assert lines[-3].endswith("Once more:")
     assert lines[-2:] == ["kurt2rt exam one", "report  made/report.html"]
+
+
+def test_ten_long_targets_fit_a_screen_of_80_columns(monkeypatch: pytest.MonkeyPatch) -> None:
+    screen = io.StringIO()
+    console = Console(file=screen, width=80, force_terminal=True, color_system=None)
+    monkeypatch.setattr("kurt2rt.cli.tables.console_of", lambda: console)
+    asked, came = "at most 2% worse, at the bad end of 95 %", "1.000 -> 1.000, at worst 1.5% worse"
+    long = [((), Verdict(f"intact, A: action changes per s {at}", asked, came, at != 3)) for at in range(10)]
+    sentence = "Exams passed without a teacher: 60 of 60 (94% to 100%) after answers and corrections; 6 of 6 at last."
+    print_told(replace(TOLD, sentence=sentence, short=brief(targets_table(long, ()))), as_json=False)
+    lines = screen.getvalue().splitlines()
+    assert len(lines) <= 19
+    assert sum("at most 2% worse  1.000 -> 1.000  " in line for line in lines) == 10
 
 
 def test_a_pipe_gets_all_rows(capsys: pytest.CaptureFixture[str]) -> None:

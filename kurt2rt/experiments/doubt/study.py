@@ -18,7 +18,8 @@ from kurt2rt.experiments.doubt.drive import (
 )
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
-from kurt2rt.experiments.study.intervals import rate_of
+from kurt2rt.experiments.study.figures import Estimate, SavedFigure, draw_estimates
+from kurt2rt.experiments.study.intervals import Rate, rate_of
 from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.report import tell_with_report
@@ -112,13 +113,24 @@ def tell(plan: StudyPlan[DoubtDrives], command: str) -> Told:
     tables = [score_table(each.rows, doubt.threshold) for each in groups if doubt and each.of is DoubtResponse.TELLS]
     collisions = collision_table(groups, plan.about.set_down_after_s)
     counts = ", ".join(f"{each.of.value} {_collisions(each)}" for each in groups)
+    path = plan.results.folder / "doubt.png"
+    rates = [(each.of.value, _collisions(each), _rate(each)) for each in groups]
+    draw_estimates([Estimate(of, *rate, f"{count} collisions") for of, count, rate in rates], "in 100 min", path)
+    picture = SavedFigure(path, "Collisions in 100 minutes", "By what doubt does; all drives from the same starts.")
     sentence = f"Collisions in {len(groups[0].rows)} drives without a teacher, by what doubt does: {counts}."
     told = Told([*tables, collisions], sentence, short=collisions)
-    return tell_with_report(plan.results.folder, f"KURT2: doubt in {plan.about.task.name}", told, command)
+    title = f"KURT2: doubt in {plan.about.task.name}"
+    return tell_with_report(plan.results.folder, title, told, command, [picture])
 
 
 def _collisions(each: Group[DoubtResponse, DriveLog]) -> int:
     return sum(len(log.collisions) for log in each.rows)
+
+
+def _rate(each: Group[DoubtResponse, DriveLog]) -> Rate:
+    """Return the collisions in 100 minutes."""
+    hundreds = [len(log.doubt) / TICKS_PER_MINUTE / 100 for log in each.rows]
+    return rate_of([len(log.collisions) for log in each.rows], hundreds)
 
 
 def score_table(logs: Sequence[DriveLog], threshold: float) -> Table:
@@ -155,17 +167,13 @@ def collision_table(groups: Sequence[Group[DoubtResponse, DriveLog]], set_down_a
         ticks = sum(float(log.driving.sum()) if driven else len(log.doubt) for log in each.rows)
         return max(ticks / TICKS_PER_MINUTE, 1e-9)
 
-    def in_100_minutes(each: Group[DoubtResponse, DriveLog]) -> str:
-        hundreds = [len(log.doubt) / TICKS_PER_MINUTE / 100 for log in each.rows]
-        return rate_text(rate_of([len(log.collisions) for log in each.rows], hundreds), ".1f")
-
     return table_of(
         f"Collisions without a teacher, {max((len(each.rows) for each in groups), default=0)} drives each",
         groups,
         ("doubt", lambda each: each.of.value),
         ("collisions", _collisions),
         ("with things seen", lambda each: sum(sum(log.seen) for log in each.rows)),
-        ("in 100 min (95 % interval)", in_100_minutes),
+        ("in 100 min (95 % interval)", lambda each: rate_text(_rate(each), ".1f")),
         ("in 100 driven min", lambda each: f"{100 * _collisions(each) / minutes(each, driven=True):.1f}"),
         ("time driven", lambda each: f"{100 * minutes(each, driven=True) / minutes(each):.0f} %"),
         ("m in a minute", lambda each: f"{sum(log.travelled_m for log in each.rows) / minutes(each):.1f}"),

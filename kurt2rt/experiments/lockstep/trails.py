@@ -53,6 +53,11 @@ def draw_way(
     for poses, colour, name in ((trail[:1], START, "start"), (trail[-1:], _END, "end")):
         for pose in poses:
             factory.draw_robot(axes, pose, colour, name)
+    draw_marks(axes, asked, collided)
+
+
+def draw_marks(axes: Axes, asked: Sequence[Place | Position], collided: Sequence[Place | Position]) -> None:
+    """Draw question marks where a robot asked, and crosses where it collided."""
     for places, marker, colour, name in ((asked, "$?$", ASKED, "asked"), (collided, "X", _COLLIDED, "collided")):
         if places:
             (marks,) = axes.plot(*columns(places), marker=marker, ms=10, color=colour, ls="none", zorder=6)

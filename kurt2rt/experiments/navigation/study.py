@@ -19,7 +19,7 @@ from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.drive_row import Place, rounded_poses
 from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
-from kurt2rt.experiments.lockstep.trails import START, draw_way
+from kurt2rt.experiments.lockstep.trails import START, draw_trail, draw_way
 from kurt2rt.experiments.navigation.exam import GoalOutcome, GoalsRun, choose_goals
 from kurt2rt.experiments.navigation.guided_tour import (
     HOME,
@@ -271,7 +271,7 @@ def _draw_errands(factory: SimulationFactory, world: str, outcome: ErrandsOutcom
     figure = Figure(figsize=(7.2, 8.0), layout="constrained")
     axes = figure.subplots()
     label = f"led about, {outcome.teaching_s:.0f} s"
-    axes.plot([x for x, _ in outcome.led], [y for _, y in outcome.led], color=_LED, lw=0.8, zorder=2, label=label)
+    draw_trail(axes, outcome.led, label, colour=_LED, zorder=2)
     goals = len(outcome.errands)
     draw_way(axes, factory, world, outcome.trail, label=f"errands without a teacher, {goals} goals")
     meant = {each.goal: each.reached for each in outcome.errands}

@@ -12,7 +12,7 @@ from kurt2rt.core.task_settings import PaperResult
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict, label_of
 from kurt2rt.experiments.lockstep.trails import START, draw_drive, legend_below
 from kurt2rt.experiments.paper.study import GrowthStudy, PaperStudy
-from kurt2rt.experiments.study.figures import SavedFigure, panels_of
+from kurt2rt.experiments.study.figures import SavedFigure, draw_passed, panels_of
 from kurt2rt.experiments.study.table import collisions_text
 from kurt2rt.platform.save_figure import save_figure
 from simbridge.contracts.simulation import SimulationFactory
@@ -86,12 +86,17 @@ def _draw_worlds(factory: SimulationFactory, worlds: Sequence[str], path: Path) 
 
 
 def draw_figures(study: PaperStudy, factory: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
-    """Draw each figure into the folder and yield it: drive-<task>.png, fig2.png, fig4.png, fig6.png, fig7.png.
+    """Draw each figure into the folder and yield it: passed.png, drive-<task>.png, fig2.png, fig4.png and so on.
 
     Figures of tasks that are not in the study are left out. Raises OSError.
     """
     paper = study.plan.about.paper
     shipped = study.of("shipped")
+    drives = {
+        f"{each.of.label}, {each.of.reading}": [drive for robot in each.rows for drive in robot.drives]
+        for each in study.experiments
+    }
+    yield draw_passed(drives, "By task and settings, all robots in all worlds of the task.", folder / "passed.png")
     for each in shipped:
         robot = each.rows[0]
         path = folder / f"drive-{each.of.task.name}.png"

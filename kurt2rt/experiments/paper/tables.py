@@ -345,10 +345,11 @@ def tell(plan: StudyPlan[PaperExtent], factory: SimulationFactory, command: str)
         f"Shared among {ROBOTS} robots whose seeds follow each other: what a robot drives in follows from its own seed."
     )
     unseen = [table for each in study.experiments if (table := unseen_table(each)).rows]
-    passed = ", ".join(f"{_passed_text(study.of(each))} with the {each} settings" for each in study.readings)
+    passed = "; ".join(f"{each} settings {_passed_text(study.of(each))}" for each in study.readings)
+    met = "" if reasons else f"{tables[0].note} "
     told = Told(
         tables,
-        f"Exams passed without a teacher: {passed}.",
+        f"{met}Exams passed without a teacher: {passed}.",
         (about, SUCCESS_NOTE, *([plain] if len(study.readings) > 1 else ())),
         _short_table(study, judged=not reasons),
         reasons,

@@ -173,15 +173,15 @@ def verdicts(study: PhasesStudy) -> Iterator[Verdict]:
     yield from _repaired("repaired by phase 3", study.stages[Step.REWARDS], asked.repaired_by_rewards)
     if asked.repaired_by_rewards and phases.signals.most_blame:
         most, limit = max(each.negative_rewards for each in study.taught(Step.REWARDS)), phases.signals.most_blame
-        yield Verdict("blame in phase 3, most of all robots", f"at most {limit}", str(most), most <= limit)
+        yield Verdict("most blame in phase 3", f"at most {limit}", str(most), most <= limit)
     yield from _repaired("repaired by the critic alone", alone, asked.repaired_by_critic)
     if asked.collisions_fall_by:
         both = [[robot.exams for robot in stage.rows] for stage in (corrupted, alone)]
         before, after = (collisions_in_10_min([exam for exams in robots for exam in exams]).value for robots in both)
         fall = fall_of(*([collisions_in_10_min(exams).value for exams in robots] for robots in both))
         yield Verdict(
-            "collisions fall by the critic alone",
-            f"by {asked.collisions_fall_by:.0%}",
+            "collisions, critic alone",
+            f"fall by {asked.collisions_fall_by:.0%}",
             f"by {fall.value:.0%} ({to_text(fall[1:], '.0%')}), {before:.2f} to {after:.2f} in 10 min",
             fall.value >= asked.collisions_fall_by,
         )
@@ -191,7 +191,7 @@ def verdicts(study: PhasesStudy) -> Iterator[Verdict]:
     if asked.interventions_below_per_hour:
         rate, most_h = interventions(study), asked.interventions_below_per_hour
         came = f"{rate.value:.2f} ({to_text(rate[1:], '.2f')}); {robots_of_the_long_run(study)}"
-        yield Verdict("interventions an hour after phase 5", f"below {most_h:g}", came, rate.value < most_h)
+        yield Verdict("interventions an hour, phase 5", f"below {most_h:g}", came, rate.value < most_h)
 
 
 def interventions(study: PhasesStudy) -> Rate:
@@ -217,11 +217,11 @@ def _repaired(what: str, stage: Stage, asked: tuple[AskedShare, ...]) -> Iterato
 
 
 def _not_worse(pair: Paired, margin: float) -> Verdict:
-    what = f"an intact set in phase 5, {label_of(pair.world)}: {pair.measure.name}"
+    what = f"intact, {label_of(pair.world)}: {pair.measure.name}"
     means = f"{pair.before:.3f} -> {pair.after:.3f}"
     if pair.measure.clean is not None:
-        asked, came = "no robot that was clean is not after", f"robots no longer clean: {pair.no_longer_clean}"
+        asked, came = "clean stay clean", f"robots no longer clean: {pair.no_longer_clean}"
         return Verdict(what, asked, f"{means}; {came}", pair.not_worse(margin))
     direction = "worse" if pair.worst_change > 0 else "better"
-    asked, came = f"worse by at most {margin:.0%}, at the bad end of 95 %", f"{abs(pair.worst_change):.1%} {direction}"
+    asked, came = f"at most {margin:.0%} worse, at the bad end of 95 %", f"{abs(pair.worst_change):.1%} {direction}"
     return Verdict(what, asked, f"{means}, at worst {came}", pair.not_worse(margin))

@@ -42,6 +42,7 @@ from kurt2rt.experiments.study.table import (
     Column,
     Table,
     Told,
+    brief,
     median,
     middle,
     of_text,
@@ -346,6 +347,6 @@ def tell(plan: StudyPlan[PhasesTask], command: str) -> Told:
         "What is missed stands here as it came."
     )
     title = f"KURT2: {plan.about.task.name.replace('_', ' ')}, phases 1 to 5"
-    told, folder = Told(tables, sentence, (about,), tables[0], reasons), plan.results.folder
+    told, folder = Told(tables, sentence, (about,), brief(tables[0]), reasons), plan.results.folder
     settings = [Section("Settings", tables=(_settings_table(plan.about.task),))]
     return tell_with_report(folder, title, told, command, list(draw_figures(study, folder)), settings, TO_SEE_LESSONS)

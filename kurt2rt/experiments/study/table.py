@@ -1,8 +1,9 @@
 """Table for terminal and report, from rows and columns; targets of a study, and whether its robots are judged."""
 
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from operator import attrgetter
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
@@ -232,3 +233,9 @@ def targets_table(
         words=len(headings) + 4,
         note=" ".join(["Not judged.", *not_judged_because]) if not_judged_because else note,
     )
+
+
+def brief(targets: Table) -> Table:
+    """Return targets for a terminal: after the first column, cells end before their first comma or bracket."""
+    rows = ((what, *(re.split(r"[,;] | \(", cell)[0] for cell in others)) for what, *others in targets.rows)
+    return replace(targets, rows=tuple(rows))

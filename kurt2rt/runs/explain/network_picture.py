@@ -85,7 +85,7 @@ def _draw_edge(axes: Axes, tail: Place, head: Place, percent: float, colour: str
     axes.annotate("", head, tail, arrowprops=arrow | look, zorder=1)
     if percent >= _LABELLED_PERCENT:
         (x, y), (to_x, to_y) = tail, head
-        # The middle of the arc: a quarter of `rad` beside the middle of the chord, as arc3 bends it.
+        # The middle of the arc, which arc3 bends by half of `rad` to the right of the chord.
         place = (x + to_x) / 2 + 0.075 * (to_y - y), (y + to_y) / 2 - 0.075 * (to_x - x)
         axes.text(*place, f"{percent:.0f}", fontsize=7, color=INK, ha="center", va="center", zorder=2, bbox=_PLATE)
 

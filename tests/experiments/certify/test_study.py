@@ -5,7 +5,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import anyio
+import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from config.settings import SettingsError
 from kurt2rt.core.rla.events import TeachingEvent
@@ -18,6 +20,7 @@ from kurt2rt.experiments.certify import (
     Run,
     all_tables,
     draw_runs,
+    draw_together,
     draw_worst,
     make_plan,
     picture_jobs,
@@ -36,6 +39,7 @@ from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from simbridge.batch.compiled import IS_COMPILED
 from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task, teach
+from tests.experiments.rows import row
 from tests.experiments.study.here import carry_out, parts_in
 from tests.simbridge.batch.equal_lessons import batch_lesson
 
@@ -122,15 +126,21 @@ def test_worker_on_another_machine_gives_the_same_files(made: Made, tmp_path: Pa
             run_remote_job(pack(moved, moved.results, ()))
 
 
-def test_worst_runs_are_driven_again_and_drawn(made: Made, tmp_path: Path) -> None:
+def test_worst_runs_are_driven_again_and_drawn(made: Made, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     _, plan = made
     worst = read_drives(plan)[:1]
     (job,) = (replace(job, results=Results(tmp_path)) for job in picture_jobs(plan, worst))
     job.run(ignore)
-    assert job.results.read(job, BlockOutcome).drives[0].trail
     (picture,) = draw_worst([job], ["kurt2rt exam"])
     assert picture.path == tmp_path / f"run-{worst[0].seed}.png"
-    assert picture.path.stat().st_size > 10_000
+    drawn: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
+    draw_together([job], [row(seed=seed, collisions=seed // 24) for seed in range(1, 25)])
+    (axes,) = drawn[0].axes
+    assert drawn[0].get_suptitle() == "23 of 24, at least 80%"
+    assert axes.get_title().endswith(f": {worst[0].seed}")
+    (drive,) = job.results.read(job, BlockOutcome).drives
+    assert tuple(np.asarray(axes.lines[0].get_xydata())[-1]) == drive.trail[-1][:2]
     with pytest.raises(BatchDiffersError, match=rf"run {worst[0].seed} in world"):
         replace(job, before=worst[0].model_copy(update={"collisions": 99})).run(ignore)
 

@@ -46,7 +46,7 @@ def test_the_picture_holds_the_lesson_its_growth_and_each_exam(
     assert all(each.get_legend() for each in axes)
 
 
-def test_a_drive_shows_the_robot_at_both_ends_its_direction_and_where_it_asked_and_collided() -> None:
+def test_a_drive_shows_both_ends_its_direction_and_its_marks() -> None:
     axes = Figure().subplots()
     there = [Pose(0.5 + 0.1 * step, 1.0, 0.0) for step in range(21)]
     carried = [Pose(0.5, 3.0 - 0.1 * step, -math.pi / 2) for step in range(11)]

@@ -104,7 +104,7 @@ def test_a_repair_needs_as_many_robots_as_the_share_says(wrong_in_a: int, wrong_
 def test_collisions_fall_by_those_that_are_no_more(left: int, result: str) -> None:
     before = [stage(Step.CORRUPTED, exam(collisions=1)) for _ in range(20)]
     after = [stage(Step.CRITIC_ALONE, exam(collisions=int(n < left)), taught=teaching()) for n in range(20)]
-    verdict = found(corrupted=before, critic_alone=after)["collisions fall by the critic alone"]
+    verdict = found(corrupted=before, critic_alone=after)["collisions, critic alone"]
     assert verdict.came.startswith(f"by {1 - left / 20:.0%} (")
     assert verdict.came.endswith(f", 2.00 to {left / 10:.2f} in 10 min")
     assert verdict.result == result
@@ -114,7 +114,7 @@ def intact(*after: DriveRow) -> dict[str, Verdict]:
     """Return the verdicts in world A, by measure, on 20 robots that were clean and alike before."""
     before = [stage(Step.PHASE_2, taught=teaching()) for _ in range(20)]
     robots = [stage(Step.INTACT, each, taught=teaching()) for each in after]
-    start = "an intact set in phase 5, A: "
+    start = "intact, A: "
     told = found(phase_2=before, intact=robots)
     return {what.removeprefix(start): each for what, each in told.items() if what.startswith(start)}
 
@@ -147,7 +147,7 @@ def test_intervention_counts_each_cause_that_needs_a_person() -> None:
     told = study(2, long_run=robots)
     assert interventions(told).value == 3.0
     verdict = list(verdicts(told))[-1]
-    assert (verdict.what, verdict.result) == ("interventions an hour after phase 5", "MISSED")
+    assert (verdict.what, verdict.result) == ("interventions an hour, phase 5", "MISSED")
     assert verdict.came.endswith("3")
 
 

@@ -32,9 +32,7 @@ def test_graphml_is_read_back_with_the_conditions(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("features", "fans"), [((), 0), (("s1", "s2"), 4)], ids=["without sensors", "sensors"])
-def test_picture_is_reproducible_with_groups_labels_and_a_fan_in_each_tile(
-    features: Sequence[str], fans: int, tmp_path: Path
-) -> None:
+def test_picture_has_groups_labels_and_a_fan_in_each_tile(features: Sequence[str], fans: int, tmp_path: Path) -> None:
     pictures = [tmp_path / f"{name}.svg" for name in ("first", "second")]
     for picture in pictures:
         write_network(build_network(system(), DROVE, features=features), "the title", picture, ROBOT, MOTIONS)
