@@ -16,9 +16,18 @@ from kurt2rt.experiments.lockstep.drive_row import PLACES, DriveRow, label_of
 from kurt2rt.experiments.lockstep.engine import ON_BUS, BatchDiffersError, Engine, Engines, choose_witnesses
 from kurt2rt.experiments.lockstep.exam import ExamSetup
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, parse_break
-from kurt2rt.experiments.lockstep.trails import ASKED, START, TRAIL, draw_drive, draw_marks, draw_trail, legend_below
+from kurt2rt.experiments.lockstep.trails import (
+    ASKED,
+    START,
+    TRAIL,
+    draw_drive,
+    draw_marks,
+    draw_trail,
+    legend_below,
+    panels_of,
+)
 from kurt2rt.experiments.study.exam_tables import WORLD
-from kurt2rt.experiments.study.figures import SavedFigure, panels_of
+from kurt2rt.experiments.study.figures import SavedFigure
 from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of, wilson_interval
 from kurt2rt.experiments.study.jobs import SEED, JobParts, Outcome, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash

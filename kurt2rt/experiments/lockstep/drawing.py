@@ -10,7 +10,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, label_of
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
-from kurt2rt.experiments.lockstep.trails import TRAIL, draw_drive, draw_trail, draw_way, legend_below
+from kurt2rt.experiments.lockstep.trails import TRAIL, draw_drive, draw_trail, draw_way, legend_below, panels_of
 from kurt2rt.platform.save_figure import ShownFigure, save_figure
 from simbridge.contracts.simulation import SimulationFactory
 
@@ -26,20 +26,15 @@ def draw_curriculum(
 
     Raises OSError, and SettingsError for an unknown world.
     """
-    panels = 2 + len(exams)
-    columns = (panels + 1) // 2
-    figure = Figure(figsize=(_SIDE * columns, 10.0), layout="constrained")
-    axes = figure.subplots(2, columns).flatten().tolist()
+    figure, axes = panels_of(2 + len(exams), (3 + len(exams)) // 2, (_SIDE, _SIDE))
     draw_way(axes[0], factory, lesson.counts.world, lesson.trail, lesson.ask_positions, lesson.collided_at)
     legend_below(axes[0])
     axes[0].set_title(
         f"Lesson in world {label_of(lesson.counts.world)}: {lesson.counts.teaching_s:.0f} s, {len(lesson.rlas)} RLAs"
     )
     _draw_growth(axes[1], lesson.growth, task)
-    for panel, each in zip(axes[2:], exams, strict=False):
+    for panel, each in zip(axes[2:], exams, strict=True):
         _draw_exam(panel, each, factory)
-    for panel in axes[panels:]:
-        panel.set_axis_off()
     save_figure(figure, path)
 
 

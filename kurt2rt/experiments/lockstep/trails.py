@@ -6,6 +6,8 @@ from itertools import pairwise
 from typing import TypeVar
 
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patheffects import withStroke
 
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, Place
@@ -117,3 +119,15 @@ def legend_below(axes: Axes, columns: int = 4) -> None:
         handlelength=1.2,
         columnspacing=1.0,
     )
+
+
+def panels_of(count: int, in_a_row: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:
+    """Return a figure with so many panels, at most `in_a_row` of them; `size`: of each, in inches."""
+    wide = min(in_a_row, count)
+    rows = math.ceil(count / wide)
+    layout = ConstrainedLayoutEngine(h_pad=0.15, w_pad=0.1)
+    figure = Figure(figsize=(size[0] * wide, size[1] * rows), layout=layout)
+    panels = figure.subplots(rows, wide, squeeze=False).flatten().tolist()
+    for unused in panels[count:]:
+        unused.set_axis_off()
+    return figure, panels[:count]

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 
 from kurt2rt.core.task_settings import PaperResult
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict, label_of
-from kurt2rt.experiments.lockstep.trails import START, draw_drive, legend_below
+from kurt2rt.experiments.lockstep.trails import START, draw_drive, legend_below, panels_of
 from kurt2rt.experiments.paper.study import GrowthStudy, PaperStudy
-from kurt2rt.experiments.study.figures import SavedFigure, draw_passed, panels_of
+from kurt2rt.experiments.study.figures import SavedFigure, draw_passed
 from kurt2rt.experiments.study.table import collisions_text
 from kurt2rt.platform.save_figure import save_figure
 from simbridge.contracts.simulation import SimulationFactory

@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 
 from kurt2rt.core.task_settings import PaperResult, TaskSettings
 from kurt2rt.experiments.lockstep.drive_row import Place
-from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_drive, legend_below
+from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_drive, legend_below, panels_of
 from kurt2rt.experiments.route.route_monitor import LAYERS
 from kurt2rt.experiments.route.study import RouteJob, RouteOutcome, Routes, RouteTasks
-from kurt2rt.experiments.study.figures import SavedFigure, panels_of
+from kurt2rt.experiments.study.figures import SavedFigure
 from kurt2rt.experiments.study.intervals import Rate, right_rate
 from kurt2rt.experiments.study.report import TO_SEE_LESSONS, spans, tell_with_report
 from kurt2rt.experiments.study.study_plan import StudyPlan, read_groups
