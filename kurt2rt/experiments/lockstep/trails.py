@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -21,6 +21,7 @@ _END = "#0b3d6b"
 _CARRIED_M = 0.5
 """A robot that is so far from where it was 0.2 s ago was set down elsewhere."""
 _ARROW = {"arrowstyle": "-|>", "color": TRAIL, "mutation_scale": 13, "shrinkA": 0, "shrinkB": 0}
+_LEGEND: dict[str, Any] = {"ncols": 4, "fontsize": "small", "frameon": False, "handlelength": 1.2, "columnspacing": 1.0}
 _ARROWS_IN_A_ROW = 5
 """So many arrows stand on a straight way through the whole picture."""
 
@@ -108,17 +109,9 @@ def columns(places: Sequence[tuple[float, ...]]) -> tuple[list[float], list[floa
     return [place[0] for place in places], [place[1] for place in places]
 
 
-def legend_below(axes: Axes, columns: int = 4) -> None:
-    """Draw the legend below the floor plan, in so many columns, where it hides no wall."""
-    axes.legend(
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.1),
-        ncols=columns,
-        fontsize="small",
-        frameon=False,
-        handlelength=1.2,
-        columnspacing=1.0,
-    )
+def legend_below(axes: Axes) -> None:
+    """Draw the legend below the floor plan, where it hides no wall."""
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), **_LEGEND)
 
 
 def panels_of(count: int, in_a_row: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:

@@ -29,7 +29,7 @@ def _draw_drives(factory: SimulationFactory, drives: Sequence[DriveRow], path: P
     for axes, drive in zip(panels, drives, strict=True):
         draw_drive(axes, factory, drive)
         axes.set_title(_format_drive(drive), fontsize="medium")
-        legend_below(axes, columns=2)
+        legend_below(axes)
     save_figure(figure, path)
 
 

@@ -67,7 +67,7 @@ def draw_route(factory: SimulationFactory, outcome: RouteOutcome, path: Path) ->
     figure, (axes,) = panels_of(1, 1, (7.2, 7.8))
     _draw(axes, factory, outcome)
     axes.set_title(_told(outcome), fontsize="medium")
-    legend_below(axes, columns=3)
+    legend_below(axes)
     save_figure(figure, path)
 
 
