@@ -168,7 +168,7 @@ def _lines(robots: Sequence[ClassRobot], width: int) -> "Iterator[TextTable | Te
 
 
 def _cells(report: HealthReport, width: int) -> tuple[str | Text, ...]:
-    percent, does = report.progress.driven_percent, Text(re.split(r",| at ", report.doing)[0])
+    percent, does = report.progress.driven_percent, Text(re.split(r",| at | by ", report.doing)[0])
     does.truncate(max(width - _OTHER_CELLS, _NAME_CELLS), overflow="ellipsis")
     teacher, alone = (report.teacher or "-")[:_NAME_CELLS], "" if percent is None else f"{percent} %"
     return teacher, str(report.phase), str(report.rlas), alone, str(report.progress.asks), report.reached, does

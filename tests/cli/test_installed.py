@@ -76,7 +76,7 @@ def said(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Said]:
     done = subprocess.run(
         [sys.executable, "-m", "tests.cli.without_packages", json.dumps(given)],
         cwd=tmp_path_factory.mktemp("base"),
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        env={**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "200"},
         capture_output=True,
         text=True,
         check=False,
