@@ -386,7 +386,7 @@ def test_question_is_drawn_next_to_what_was_taught(a_lesson: Lesson) -> None:
 def test_open_question_keeps_its_words_while_noise_lets_it_drive(a_lesson: Lesson) -> None:
     phone = a_lesson.phone
     a_lesson.begin(standing=Standing())
-    phone.run("window.heldMs = performance.now() + 5000; performance.now = () => window.heldMs;")
+    phone.run("window.now = performance.now; window.heldMs = now() + 5000; performance.now = () => window.heldMs;")
     asks = Standing(StandReason.ASKS, asks=True)
     a_lesson.show(cause="unknown", action=None, rla=None, standing=asks, distance=710.0)
     a_lesson.reads("#sentence", "I don't know this situation, teach me")
@@ -399,7 +399,7 @@ def test_open_question_keeps_its_words_while_noise_lets_it_drive(a_lesson: Lesso
     a_lesson.show(cause="rla", action="forward", rla=2, image="mirrored", distance=0.0, standing=again, lessons=2)
     a_lesson.reads("#sentence", "RLA 2 mirrored does forward")
     assert phone.text("#gauge-text") == "just like RLA 1", "numbers are in the explanation"
-    phone.run("delete performance.now;")
+    phone.run("performance.now = window.now;")  # the time that the tests pass, and no real one
 
 
 # The room.
