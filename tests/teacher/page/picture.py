@@ -1,30 +1,29 @@
-"""The README's picture of the teacher's page: five moments of a lesson on a phone, one next to the other.
+"""The docs' picture of the teacher's page: a phone on which the robot asks, and what each part of the page is.
 
-`python -m tests.teacher.page.picture` teaches a simulated robot for a minute and writes `docs/page.png`.
+`python -m tests.teacher.page.picture` teaches a simulated robot a little and writes `docs/page.png`.
 """
 
 import tempfile
 from pathlib import Path
 
-from PIL import Image
+from matplotlib.font_manager import findfont
+from PIL import Image, ImageDraw, ImageFont
 
 from tests.teacher.page.classroom import Classroom, classroom
-from tests.teacher.page.phone import Phone, phone
+from tests.teacher.page.phone import PORTRAIT, Phone, phone
 
 PICTURE = Path("docs/page.png")
-_MARGIN_PX, _GROUND = 20, (200, 204, 222)
-_WIDTH_PX = 390
-_COLOURS = 256
-_SLOW = """
-const speed = document.querySelector('#lesson-speed');
-speed.value = '60';
-speed.dispatchEvent(new Event('input'));
-"""
-_LOOK_BACK = """
-const time = document.querySelector('#rewind-time');
-time.value = arguments[0];
-time.dispatchEvent(new Event('input'));
-"""
+_PARTS = {
+    "#bar": "the task, and how much\nit drove by itself",
+    "#stage": "the room, the robot, its\nsensors; red where it asked",
+    "#why": "it asks: what it sees now,\nand what the nearest rule saw",
+    "#actions": "touch what is right here;\ndashed: what that rule does",
+    "#rewards": "wrong and right, undo,\nlook back",
+    "#stop-bar": "STOP is always there;\nGO lets it drive on",
+}
+_SIZE, _PHONE_PX, _MARGIN_PX, _TEXT_PX = (1280, 1360), 610, 20, 34
+_GROUND, _LINE, _INK = (233, 237, 242), (120, 132, 148), (16, 21, 28)
+_MIDDLE = "const box = document.querySelector(arguments[0]).getBoundingClientRect(); return box.y + box.height / 2;"
 
 
 def picture(target: Path = PICTURE) -> None:
@@ -33,7 +32,8 @@ def picture(target: Path = PICTURE) -> None:
         shots = Path(folder) / "shots"
         with phone(shots) as opened, classroom(Path(folder), opened) as room:
             _teach(opened, room)
-        _join([shots / f"{number}.png" for number in range(1, 6)], target)
+            middles = [float(opened.run(_MIDDLE, part)) for part in _PARTS]
+        _annotated(shots / "asks.png", middles).quantize(256, Image.Quantize.FASTOCTREE).save(target, optimize=True)
 
 
 def _teach(phone: Phone, room: Classroom) -> None:
@@ -41,55 +41,29 @@ def _teach(phone: Phone, room: Classroom) -> None:
     phone.wait(lambda: phone.text("#sentence").startswith("I know nothing"), "the robot asks")
     phone.touch("#claim-button")
     phone.wait(lambda: not phone.shows("#claim"), "this page has control")
-    phone.run(_SLOW)
-    slow = "return document.querySelector('#phase').textContent.includes('slow, 60 %');"
-    phone.wait(lambda: phone.run(slow), "lessons are slow")
-    phone.touch("[data-action=along_left_wall]")
-    phone.wait(lambda: phone.text("#sentence").startswith("RLA 1 "), "it drives")
-    phone.pass_time(0.5)
-    phone.wait(lambda: phone.has("#why.asks.drawn"), "it asks")
-    phone.show("1")
-    phone.finger_down(*phone.middle("[data-action=spin_right]"))
-    phone.wait(lambda: "lessons: 1" in phone.text("#said"), "the hold has taught")
-    phone.pass_time(0.5)
-    phone.show("2")
-    phone.finger_up()
-    phone.pass_time(3.0)
-    phone.touch("#rewind")
-    phone.touch("#rewind-go")
-    phone.run(_LOOK_BACK, -2.4)
-    phone.pass_time(0.5)
-    phone.show("3")
-    phone.touch("#rewind-close")
-    phone.touch("#tab-drive")
-    _drive(phone)
-    phone.wait(lambda: phone.shows("#shown"), "the drive is shown")
-    phone.pass_time(0.5)
-    phone.show("4")
-    with phone.in_the_dark():
-        phone.touch("#tab-more")
+    for action in ("along_left_wall", "spin_right"):
+        phone.touch(f"[data-action={action}]")
+        phone.wait(lambda: phone.text("#sentence").startswith("RLA "), "it drives")
         phone.pass_time(0.5)
-        phone.show("5")
+        phone.wait(lambda: phone.has("#why.asks.drawn"), "it asks")
+    phone.pass_time(0.5)
+    phone.show("asks")
 
 
-def _drive(phone: Phone) -> None:
-    """Drive by hand: forward, a turn to the right, and forward."""
-    x, y = phone.middle("#stick")
-    phone.finger_down(x, y)
-    for dx, dy, seconds in ((0, -70, 1.0), (70, 0, 0.8), (0, -70, 0.8)):
-        phone.finger_to(x + dx, y + dy)
-        phone.pass_time(seconds)
-    phone.finger_up()
-
-
-def _join(shots: list[Path], target: Path) -> None:
-    images = [Image.open(each).convert("RGB") for each in shots]
-    height = round(images[0].height * _WIDTH_PX / images[0].width)
-    joined = Image.new("RGB", (len(images) * (_WIDTH_PX + _MARGIN_PX) + _MARGIN_PX, height + 2 * _MARGIN_PX), _GROUND)
-    for place, image in enumerate(images):
-        small = image.resize((_WIDTH_PX, height), Image.Resampling.LANCZOS)
-        joined.paste(small, (_MARGIN_PX + place * (_WIDTH_PX + _MARGIN_PX), _MARGIN_PX))
-    joined.quantize(_COLOURS).save(target, optimize=True)
+def _annotated(shot: Path, middles: list[float]) -> Image.Image:
+    """Return the phone with a text for each part, at its height in pixels of the page."""
+    image = Image.open(shot).convert("RGB")
+    scale = _PHONE_PX / PORTRAIT[0]
+    small = image.resize((_PHONE_PX, round(scale * PORTRAIT[1])), Image.Resampling.LANCZOS)
+    drawn = Image.new("RGB", _SIZE, _GROUND)
+    drawn.paste(small, (_MARGIN_PX, _MARGIN_PX))
+    draw, right = ImageDraw.Draw(drawn), _MARGIN_PX + _PHONE_PX
+    for text, middle in zip(_PARTS.values(), middles, strict=True):
+        y = _MARGIN_PX + scale * middle
+        draw.line((right, y, right + 2 * _MARGIN_PX, y), fill=_LINE, width=3)
+        font = ImageFont.truetype(findfont("DejaVu Sans"), _TEXT_PX)
+        draw.multiline_text((right + 2.5 * _MARGIN_PX, y), text, fill=_INK, font=font, anchor="lm", spacing=8)
+    return drawn
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ const VALUES_FROM_PHASE = 3;
 const CALM_MS = 1000; // a text stays for so long at least, so that it can be read
 const ASKED = ["unknown", "doubt", "touches"]; // causes by which a state has a question
 const LIKE = [[0.3, "just like"], [1, "quite like"], [1.6, "a bit like"], [Infinity, "far from"]]; // up to which share of R
+const BEYOND = 1.01; // share of R of a situation that noise puts within R while the robot asks
 const GAUGE_SHARE = 0.7; // position of R on the gauge
 
 export function when(stamp) {
@@ -100,8 +101,8 @@ function actsOf({ stands, by_hand: byHand, lessons, phase, behaviour }, { boot }
 }
 
 // Returns how like the nearest RLA's condition the situation is, in words; the numbers are in the explanation.
-function likeness(state) {
-  const [, like] = LIKE.find(([most]) => state.distance / state.radius <= most);
+function likeness(state, least = 0) {
+  const [, like] = LIKE.find(([most]) => Math.max(least, state.distance / state.radius) <= most);
   return `${like} ${nearest(state)}`;
 }
 
@@ -110,7 +111,7 @@ function headline(state) {
   const flickers = asks(state) && !ASKED.includes(state.cause) && !standsFor(state);
   const says = flickers ? "I don't know this situation, teach me" : sentence(state);
   const its = state.nearest_action === WITHDRAWN ? "its action was withdrawn" : words(state.nearest_action ?? "–");
-  if (known(state)) return [says, `${asksWay(state) ? `nearest: mid-level ${nearest(state)}` : likeness(state)}: ${its}`];
+  if (known(state)) return [says, `${asksWay(state) ? `nearest: mid-level ${nearest(state)}` : likeness(state, flickers ? BEYOND : 0)}: ${its}`];
   if (!asksWay(state)) return [says, "touch the action that is right here"];
   // Without a distance the robot was put elsewhere.
   const nowhere = state.nearest !== null && state.distance === null;
