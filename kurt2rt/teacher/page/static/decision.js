@@ -95,6 +95,11 @@ function known(state) {
   return state.nearest !== null && state.distance !== null && state.radius > 0;
 }
 
+// Returns the distance of the nearest RLA as a share of R.
+function shareOf({ distance, radius }) {
+  return distance / radius;
+}
+
 // Changes with each act of a person: GO, a stop, a press, a lesson, another phase, robot or behaviour.
 function actsOf({ stands, by_hand: byHand, lessons, phase, behaviour }, { boot }) {
   return JSON.stringify([boot, stands.needs_go, byHand, lessons, phase, behaviour]);
@@ -102,7 +107,7 @@ function actsOf({ stands, by_hand: byHand, lessons, phase, behaviour }, { boot }
 
 // Returns how like the nearest RLA's condition the situation is, in words; the numbers are in the explanation.
 function likeness(state, least = 0) {
-  const [, like] = LIKE.find(([most]) => Math.max(least, state.distance / state.radius) <= most);
+  const [, like] = LIKE.find(([most]) => Math.max(least, shareOf(state)) <= most);
   return `${like} ${nearest(state)}`;
 }
 
@@ -174,11 +179,7 @@ export class Decision {
   }
 
   show(state, hello) {
-    const share = known(state) ? state.distance / state.radius : 0;
-    this.#gauge.classList.toggle("beyond", share > 1);
-    this.#gauge.classList.toggle("none", !known(state));
-    this.#fill.style.width = `${Math.min(1, share * GAUGE_SHARE) * 100}%`;
-    this.#trace.add(state.tick, known(state) && !asksWay(state) ? share : null);
+    this.#trace.add(state.tick, known(state) && !asksWay(state) ? shareOf(state) : null);
     this.#surprise(state);
     const acts = actsOf(state, hello);
     const acted = acts !== this.#acts;
@@ -204,6 +205,10 @@ export class Decision {
 
   #count(state, hello) {
     const { off, guard, question } = numbersOf(state, hello);
+    const share = known(state) ? shareOf(state) : 0;
+    this.#gauge.classList.toggle("beyond", share > 1);
+    this.#gauge.classList.toggle("none", !known(state));
+    this.#fill.style.width = `${Math.min(1, share * GAUGE_SHARE) * 100}%`;
     setText(this.#text, off);
     setText(this.#guard, guard);
     if (asksWay(state)) this.#differ(question, () => strip(state.mid.here, state.mid.there, hello.mid));
