@@ -24,7 +24,7 @@ export class Trace {
     if (!drawn || !this.#shares.length || drawn.height < 16) return;
     const { paint, width, height } = drawn;
     const newest = this.#shares.at(-1)[0];
-    const right = width - 16;
+    const right = width - 36;
     const y = (share) => height - 2 - (Math.min(share, MOST_SHARE) / MOST_SHARE) * (height - 4);
     paint.lineWidth = 1;
     paint.strokeStyle = FAINT;
@@ -41,7 +41,7 @@ export class Trace {
     paint.setLineDash([]);
     paint.fillStyle = GREY;
     paint.font = "600 12px system-ui, sans-serif";
-    paint.fillText("R", right + 5, y(1) + 4);
+    paint.fillText("asks", right + 5, y(1) + 4); // beyond this distance
     paint.lineWidth = 2;
     let last = null;
     for (const [tick, share] of this.#shares) {
