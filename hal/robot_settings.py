@@ -31,6 +31,11 @@ class GeometrySettings(Settings):
     mass_kg: Annotated[float, Field(gt=0, le=500)]
     yaw_inertia_kg_m2: Annotated[float, Field(gt=0, le=100)]
 
+    @property
+    def outline_m(self) -> tuple[float, float]:
+        """Length and width of the body."""
+        return self.outline_length_m, self.outline_width_m
+
 
 class MotorSettings(Settings):
     """Abilities of the motors and their speed loop, for the simulator and the watch over the wheels."""

@@ -25,7 +25,7 @@ from simbridge.links import CanLine, SimulatedLink
 from simbridge.realtime import RealtimeSimulation, RealtimeWorld, plan_of
 from simbridge.robot.world import World
 from simbridge.simulated_robot import SimulatedKurt2, SimulatedRobot
-from simbridge.survey.drawing import draw_robot, draw_world
+from simbridge.survey.drawing import draw_world
 from simbridge.survey.free_poses import FreePoses
 from simbridge.worlds.geometry import Point
 from simbridge.worlds.world_loading import load_world
@@ -53,10 +53,6 @@ class RobotWorlds:
     def draw(self, axes: "Axes", world: str) -> None:
         """Draw a world from above on axes in m. Raises config.settings.SettingsError for an unknown world."""
         draw_world(axes, load_world(world, self.settings))
-
-    def draw_robot(self, axes: "Axes", pose: Pose, colour: str, label: str = "") -> None:
-        """Draw the robot at a pose, on axes in m, with a label for the legend."""
-        draw_robot(axes, pose, self.settings, colour, label)
 
     def settings_of(self, world: str) -> str:
         """Return all settings of a world as a text. Raises config.settings.SettingsError for an unknown world."""

@@ -16,16 +16,7 @@ from kurt2rt.experiments.lockstep.drive_row import PLACES, DriveRow, label_of
 from kurt2rt.experiments.lockstep.engine import ON_BUS, BatchDiffersError, Engine, Engines, choose_witnesses
 from kurt2rt.experiments.lockstep.exam import ExamSetup
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, parse_break
-from kurt2rt.experiments.lockstep.trails import (
-    ASKED,
-    START,
-    TRAIL,
-    draw_drive,
-    draw_marks,
-    draw_trail,
-    legend_below,
-    panels_of,
-)
+from kurt2rt.experiments.lockstep.trails import draw_drive, legend_below, panels_of
 from kurt2rt.experiments.study.exam_tables import WORLD
 from kurt2rt.experiments.study.figures import SavedFigure
 from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of, wilson_interval
@@ -44,6 +35,7 @@ from kurt2rt.experiments.study.table import (
     to_text,
 )
 from kurt2rt.knowledge.journal.loading import read_lessons
+from kurt2rt.platform.drive_picture import ASKED, START, TRAIL, draw_marks, draw_robot, draw_trail
 from kurt2rt.platform.save_figure import save_figure
 from simbridge.contracts.batch import BatchRefusedError
 
@@ -422,14 +414,14 @@ def draw_together(jobs: Sequence[BlockJob], drives: Sequence[DriveRow]) -> Saved
         for drive in rows:
             draw_trail(axes, drive.trail, "", colour=TRAIL if _is_clean(drive) else ASKED)
             draw_marks(axes, drive.asked_at, drive.collided_at)
-            jobs[0].factory.draw_robot(axes, drive.trail[0], START)
-        axes.set_title(f"World {label_of(world)}: {spans(sorted(each.seed for each in rows))}")
+            draw_robot(axes, drive.trail[0], jobs[0].robot.geometry.outline_m, START)
+        axes.set_title(f"World {label_of(world)}: run {spans(sorted(each.seed for each in rows))}")
     stamp = f"{of_text(clean, len(drives))}, at least {wilson_interval(clean, len(drives))[0]:.0%}"
     colour = START if clean == len(drives) else ASKED
     box = {"boxstyle": "round,pad=0.5", "facecolor": "white", "edgecolor": colour, "linewidth": 3.0}
     figure.suptitle(stamp, fontsize=20, fontweight="bold", color=colour, bbox=box)
     save_figure(figure, folder / "runs.png")
-    caption = f"{len(jobs)} of {len(drives)} runs, the worst first; in red what was not without fault."
+    caption = f"{len(jobs)} of {len(drives)} runs; those with a fault come first and are red."
     return SavedFigure(folder / "runs.png", "Where it drove", caption)
 
 
@@ -481,8 +473,8 @@ def tell(plan: StudyPlan[Certified], again: Sequence[BlockJob], words: Sequence[
         "sunlight are not in it."
     )
     driven_again = (
-        "The runs of the pictures, the worst first, were driven again, on the CAN bus and with the same outcome. The "
-        "line below a picture is the command that shows it again."
+        "The runs of the pictures were driven again, on the CAN bus and with the same outcome. The line below the "
+        "picture of one run is the command that shows it again."
     )
     found = [
         {**each.model_dump(exclude=_LEFT_OUT), "broken": broken[each.seed], "command": word}

@@ -18,16 +18,15 @@ from kurt2rt.core.perception.definition import SituationDefinition, load_situati
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.experiments.lockstep.engine import Engine
-from kurt2rt.experiments.lockstep.trails import draw_trail
 from kurt2rt.gym.endings import TERMINAL, Ending, read_endings
 from kurt2rt.gym.engines import open_drive, read_engine
 from kurt2rt.gym.episode_setup import EpisodeSetup
 from kurt2rt.gym.moment import AgentDrive, Moment
 from kurt2rt.gym.rewards import DecisionOutcome, JudgeReward, build_reward
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
+from kurt2rt.platform.drive_picture import TRAIL, draw_robot, draw_trail
 from simbridge.contracts.simulation import Pose, SimulationFactory
 from simbridge.simulation import Kurt2SimulationFactory
-from simbridge.survey.drawing import draw_robot
 from simbridge.worlds.world_loading import load_world
 
 Observation: TypeAlias = NDArray[np.float64]
@@ -217,7 +216,7 @@ class Picture:
         """Return the world with the robot at a pose and the way that it came, RGB of shape (height, width, 3)."""
         walls = set(self._axes.get_children())
         draw_trail(self._axes, trail, "")
-        draw_robot(self._axes, pose, self._robot)
+        draw_robot(self._axes, pose, self._robot.geometry.outline_m, TRAIL)
         self._canvas.draw()  # type: ignore[no-untyped-call]
         pixels = np.array(self._canvas.buffer_rgba(), dtype=np.uint8)[:, :, :3]  # type: ignore[no-untyped-call]
         for drawn in set(self._axes.get_children()) - walls:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 
 from hal.guarded_robot import GuardedRobot
 from hal.robot import Robot
+from hal.robot_settings import RobotSettings
 from hal.tap import Tap
 
 if TYPE_CHECKING:
@@ -194,6 +195,11 @@ class Simulation(Protocol):
 class SimulationFactory(Protocol):
     """Opener of simulations of one robot in named worlds; it also checks and draws these worlds."""
 
+    @property
+    def settings(self) -> RobotSettings:
+        """Settings of the robot."""
+        ...
+
     def open(self, world: str, seed: int, purpose: str) -> Simulation:
         """Open a simulation of the robot in a world, by name.
 
@@ -229,10 +235,6 @@ class SimulationFactory(Protocol):
 
     def draw(self, axes: "Axes", world: str) -> None:
         """Draw a world from above on axes in m. Raises config.settings.SettingsError for an unknown world."""
-        ...
-
-    def draw_robot(self, axes: "Axes", pose: Pose, colour: str, label: str = "") -> None:
-        """Draw the robot at a pose, to scale on axes in m, with a label for the legend."""
         ...
 
 

@@ -1,11 +1,8 @@
-"""Drawing of worlds, robots and trajectories on the caller's axes."""
+"""Drawing of worlds on the caller's axes."""
 
 import math
 from typing import TYPE_CHECKING
 
-from hal.robot_settings import RobotSettings
-from simbridge.contracts.simulation import Pose
-from simbridge.worlds.geometry import Point, rectangle
 from simbridge.worlds.world_settings import WorldSettings
 
 if TYPE_CHECKING:
@@ -13,7 +10,6 @@ if TYPE_CHECKING:
 
 _WALL = "#c3c9cf"
 _WALL_EDGE = "#3d454d"
-_ROBOT = "#2f6db3"
 _TEXT = "#222222"
 _TEXT_SIZE = 11.0
 _MARGIN_M = 0.15
@@ -50,21 +46,3 @@ def draw_world(axes: "Axes", world: WorldSettings) -> None:
         spine.set_visible(False)
     axes.set_xlabel("x in m", fontsize=_TEXT_SIZE, color=_TEXT)
     axes.set_ylabel("y in m", fontsize=_TEXT_SIZE, color=_TEXT)
-
-
-def draw_robot(axes: "Axes", pose: Pose, robot: RobotSettings, colour: str = _ROBOT, label: str = "") -> None:
-    """Draw the body to scale in metres, with a wedge that points ahead; `label`: its name in the legend."""
-    from matplotlib.patches import Polygon
-
-    length_m, width_m = robot.geometry.outline_length_m, robot.geometry.outline_width_m
-    centre = (pose.x_m, pose.y_m)
-    body = rectangle(centre, length_m, width_m, pose.heading_rad)
-    axes.add_patch(Polygon(body, closed=True, facecolor=colour, alpha=0.3, linewidth=0.0, zorder=4, label=label))
-    axes.add_patch(Polygon(body, closed=True, fill=False, edgecolor=colour, linewidth=1.6, zorder=5))
-    cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
-
-    def at(ahead_m: float, left_m: float) -> Point:
-        return pose.x_m + ahead_m * cos - left_m * sin, pose.y_m + ahead_m * sin + left_m * cos
-
-    wedge = (at(length_m * 0.42, 0.0), at(length_m * 0.12, width_m * 0.25), at(length_m * 0.12, -width_m * 0.25))
-    axes.add_patch(Polygon(wedge, closed=True, facecolor=colour, linewidth=0.0, zorder=5))

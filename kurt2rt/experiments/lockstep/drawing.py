@@ -10,8 +10,9 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, label_of
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
-from kurt2rt.experiments.lockstep.trails import TRAIL, draw_drive, draw_trail, draw_way, legend_below, panels_of
-from kurt2rt.platform.save_figure import ShownFigure, save_figure
+from kurt2rt.experiments.lockstep.trails import draw_drive, draw_way, legend_below, panels_of
+from kurt2rt.platform.drive_picture import TRAIL, draw_trail
+from kurt2rt.platform.save_figure import save_figure
 from simbridge.contracts.simulation import SimulationFactory
 
 _TEACHER = "#b0b0b0"
@@ -38,21 +39,20 @@ def draw_curriculum(
     save_figure(figure, path)
 
 
-def exams_figure(exams: Sequence[DriveRow], factory: SimulationFactory) -> Figure:
-    """Return each exam over the teacher's own drive, one below the other as a phone shows them.
+def exams_figure(exams: Sequence[DriveRow], factory: SimulationFactory, in_a_row: int = 1) -> Figure:
+    """Return each exam over the teacher's own drive; one in a row is what a phone shows.
 
     Raises SettingsError for an unknown world.
     """
-    figure = ShownFigure(figsize=(_SIDE, _SIDE * len(exams)), layout="constrained")
-    for panel, each in zip(figure.subplots(len(exams), 1, squeeze=False).flatten(), exams, strict=True):
+    figure, panels = panels_of(len(exams), in_a_row, (_SIDE, _SIDE))
+    for panel, each in zip(panels, exams, strict=True):
         _draw_exam(panel, each, factory)
     return figure
 
 
 def drive_figure(factory: SimulationFactory, world: str, drive: Episode) -> Figure:
     """Return a drive so far, in its world from above. Raises SettingsError for an unknown world."""
-    figure = ShownFigure(figsize=(_SIDE, _SIDE), layout="constrained")
-    axes = figure.subplots()
+    figure, (axes,) = panels_of(1, 1, (_SIDE, _SIDE))
     draw_way(axes, factory, world, drive.trail, drive.ask_positions, drive.collided_at)
     if drive.trail or drive.ask_positions:
         legend_below(axes)

@@ -19,7 +19,7 @@ from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.drive_row import Place, rounded_poses
 from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
-from kurt2rt.experiments.lockstep.trails import START, draw_trail, draw_way
+from kurt2rt.experiments.lockstep.trails import draw_way
 from kurt2rt.experiments.navigation.exam import GoalOutcome, GoalsRun, choose_goals
 from kurt2rt.experiments.navigation.guided_tour import (
     HOME,
@@ -47,6 +47,7 @@ from kurt2rt.experiments.study.table import (
     targets_table,
 )
 from kurt2rt.knowledge.journal.loading import copy_knowledge, read_lessons
+from kurt2rt.platform.drive_picture import START, draw_trail
 from kurt2rt.platform.save_figure import save_figure
 from kurt2rt.runtime import RuntimeOptions
 from simbridge.contracts.simulation import Pose, SimulationFactory

@@ -10,10 +10,11 @@ from matplotlib.figure import Figure
 
 from kurt2rt.core.task_settings import PaperResult
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict, label_of
-from kurt2rt.experiments.lockstep.trails import START, draw_drive, legend_below, panels_of
+from kurt2rt.experiments.lockstep.trails import draw_drive, legend_below, panels_of
 from kurt2rt.experiments.paper.study import GrowthStudy, PaperStudy
 from kurt2rt.experiments.study.figures import SavedFigure, draw_passed
 from kurt2rt.experiments.study.table import collisions_text
+from kurt2rt.platform.drive_picture import START, draw_robot
 from kurt2rt.platform.save_figure import save_figure
 from simbridge.contracts.simulation import SimulationFactory
 
@@ -73,7 +74,7 @@ def _draw_testing_ground(factory: SimulationFactory, world: str, path: Path) -> 
     axes = figure.subplots()
     factory.draw(axes, world)
     with closing(factory.open(world, 1, "exam")) as simulation:
-        factory.draw_robot(axes, simulation.pose, START, "start")
+        draw_robot(axes, simulation.pose, factory.settings.geometry.outline_m, START, "start")
     save_figure(figure, path)
 
 

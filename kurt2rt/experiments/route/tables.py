@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from kurt2rt.core.task_settings import PaperResult, TaskSettings
 from kurt2rt.experiments.lockstep.drive_row import Place
-from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_drive, legend_below, panels_of
+from kurt2rt.experiments.lockstep.trails import draw_drive, legend_below, panels_of
 from kurt2rt.experiments.route.route_monitor import LAYERS
 from kurt2rt.experiments.route.study import RouteJob, RouteOutcome, Routes, RouteTasks
 from kurt2rt.experiments.study.figures import SavedFigure
@@ -35,6 +35,7 @@ from kurt2rt.experiments.study.table import (
     to_text,
     total,
 )
+from kurt2rt.platform.drive_picture import ASKED, columns
 from kurt2rt.platform.save_figure import save_figure
 from simbridge.contracts.simulation import SimulationFactory
 

@@ -7,9 +7,9 @@ from typing import NamedTuple
 from matplotlib.figure import Figure
 
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
-from kurt2rt.experiments.lockstep.trails import TRAIL
 from kurt2rt.experiments.study.intervals import wilson_interval
 from kurt2rt.experiments.study.table import of_text
+from kurt2rt.platform.drive_picture import TRAIL
 from kurt2rt.platform.save_figure import save_figure
 
 

@@ -17,6 +17,7 @@ from kurt2rt.platform.save_figure import save_figure
 from kurt2rt.runs.explain.colours import INK, PALE_INK, colours_of
 from kurt2rt.runs.explain.sensor_view import SensorView, draw_motion, draw_sensor_view
 
+Node = Mapping[str, Any]
 _TILE_INCHES = 0.95
 _HALF = 0.44
 """Half of the side of a tile, in tiles."""
@@ -67,7 +68,7 @@ def _network_figure(
     for rla_id, place in places.items():
         node = nodes[rla_id]
         _draw_tile(axes, f"{rla_id}", node, place, colours[node["action"]])
-        _draw_content(axes, node, place, robot, motions, colours[node["action"]])
+        _fill(axes, node, place, robot, motions.get(node["action"]), colours[node["action"]])
     return figure
 
 
@@ -90,7 +91,7 @@ def _draw_edge(axes: Axes, tail: Place, head: Place, percent: float, colour: str
         axes.text(*place, f"{percent:.0f}", fontsize=7, color=INK, ha="center", va="center", zorder=2, bbox=_PLATE)
 
 
-def _draw_tile(axes: Axes, name: str, node: Mapping[str, Any], place: Place, colour: str) -> None:
+def _draw_tile(axes: Axes, name: str, node: Node, place: Place, colour: str) -> None:
     """Draw the frame of an RLA, thicker the more often it drove, with its id and the number of its uses."""
     x, y = place
     corner, side, width = (x - _HALF, y - _HALF), 2 * _HALF, 1.0 + min(node["uses"], 50) / 20
@@ -101,14 +102,7 @@ def _draw_tile(axes: Axes, name: str, node: Mapping[str, Any], place: Place, col
     axes.text(x + 0.4, y - 0.4, f"{node['uses']}x", fontsize=6.5, color=PALE_INK, ha="right", zorder=9)
 
 
-def _draw_content(
-    axes: Axes,
-    node: Mapping[str, Any],
-    place: Place,
-    robot: RobotSettings,
-    motions: Mapping[str, WheelSpeeds],
-    colour: str,
-) -> None:
+def _fill(axes: Axes, node: Node, place: Place, robot: RobotSettings, motion: WheelSpeeds | None, colour: str) -> None:
     """Draw the readings of a condition round the robot and the way that its action takes; otherwise its name."""
     x, y = place
     counts = {name: node[name] for name in robot.infrared.names if name in node}
@@ -117,5 +111,5 @@ def _draw_content(
         return
     fan = axes.inset_axes((x - 0.44, y - 0.44, 0.88, 0.88), transform=axes.transData, zorder=5)
     draw_sensor_view(fan, robot, SensorView(counts, {}), wall_width=1.3)
-    if node["action"] in motions:
-        draw_motion(fan, robot, motions[node["action"]], colour)
+    if motion is not None:
+        draw_motion(fan, robot, motion, colour)

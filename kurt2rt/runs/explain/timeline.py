@@ -96,8 +96,9 @@ class Sample:
     held_back: bool
     """True if the guard changed the decision for another reason than its slew limit."""
     x_m: float
-    """Dead-reckoned position; the first tick is at the origin, heading along x."""
+    """Dead-reckoned pose; the first tick is at the origin, heading along x."""
     y_m: float
+    heading_rad: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +115,8 @@ class Timeline:
     """Ticks that ran but are not in the recording."""
     surprised_s: float | None = None
     """Time of the greatest surprise; None if there was none."""
+    outline_m: tuple[float, float] = (0.0, 0.0)
+    """Length and width of the robot."""
 
     @property
     def from_s(self) -> float:
@@ -184,7 +187,7 @@ class _Reader:
     """Incremental builder of a timeline."""
 
     def __init__(self, robot: RobotSettings, from_s: float, to_s: float, every: int) -> None:
-        self._period_s = robot.cycle_s
+        self._robot, self._period_s = robot, robot.cycle_s
         self._odometry = WheelOdometry(robot.geometry)
         self._pose = PlanePose()
         self._from_s, self._to_s, self._every = from_s, to_s, every
@@ -209,6 +212,7 @@ class _Reader:
             self._missed,
             self._unrecorded,
             self._surprised_s,
+            self._robot.geometry.outline_m,
         )
 
     def update(self, entry: TickEntry) -> bool:
@@ -281,6 +285,7 @@ class _Reader:
             held_back=bool(_notable_reasons(entry)),
             x_m=self._pose.x_m,
             y_m=self._pose.y_m,
+            heading_rad=self._pose.heading_rad,
         )
 
 

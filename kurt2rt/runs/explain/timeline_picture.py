@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from kurt2rt.platform.drive_picture import END, START, draw_arrows, draw_marks, draw_robot
 from kurt2rt.platform.save_figure import ShownFigure, save_figure
 from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS, TEACHER, colours_of
 from kurt2rt.runs.explain.timeline import Kind, Sample, Stretch, Timeline, format_summary, kind_intervals
@@ -20,6 +21,7 @@ _KNOWN, _LIMIT = "#e3f1e6", "#3f9b5c"
 _CURVE = "#3b4754"
 _LEFT, _RIGHT, _HELD_BACK = "#2b7bba", "#c85a0a", "#efe3f5"
 _HIGHEST_SHARE = 1.6
+_ARROW_EVERY_M = 0.6
 _MOST_NUMBERED = 24
 _OF_KIND = {
     Kind.LED: (TEACHER, "led by a teacher"),
@@ -97,14 +99,15 @@ def _path(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
         shades.append(_colour_of(stretch, colours))
     axes.add_collection(LineCollection(lines, colors=shades, linewidths=2.4, capstyle="round", zorder=3))
     first, last = samples[0], samples[-1]
-    axes.plot(first.x_m, first.y_m, "o", markersize=9, color="white", markeredgecolor=INK, zorder=5)
-    axes.plot(last.x_m, last.y_m, "s", markersize=8, color=INK, zorder=5)
+    draw_arrows(axes, [(each.x_m, each.y_m) for each in samples], _ARROW_EVERY_M, INK)
+    for end, colour in ((first, START), (last, END)):
+        draw_robot(axes, (end.x_m, end.y_m, end.heading_rad), timeline.outline_m, colour)
     axes.annotate("begin", (first.x_m, first.y_m), xytext=(9, -13), textcoords="offset points", fontsize=9, color=INK)
     axes.annotate("end", (last.x_m, last.y_m), xytext=(9, -10), textcoords="offset points", fontsize=9, color=INK)
     asked = kind_intervals(timeline, Kind.ASKS)
     for number, (from_s, _) in enumerate(asked, start=1):
         place = _at(samples, from_s)
-        axes.plot(place.x_m, place.y_m, "o", markersize=6, color=ASKS, markeredgecolor="white", zorder=6)
+        draw_marks(axes, [(place.x_m, place.y_m)], ())
         if len(asked) <= _MOST_NUMBERED:
             axes.annotate(
                 str(number),
