@@ -7,8 +7,6 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-from matplotlib.figure import Figure
-
 from behaviors.metrics.errands import ErrandsSettings
 from behaviors.metrics.streets import ALONG
 from behaviors.metrics.town import Street
@@ -19,7 +17,7 @@ from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.drive_row import Place, rounded_poses
 from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
-from kurt2rt.experiments.lockstep.trails import draw_way
+from kurt2rt.experiments.lockstep.trails import draw_way, panels_of
 from kurt2rt.experiments.navigation.exam import GoalOutcome, GoalsRun, choose_goals
 from kurt2rt.experiments.navigation.guided_tour import (
     HOME,
@@ -269,8 +267,7 @@ def _mean(values: Iterable[float]) -> float:
 
 def _draw_errands(factory: SimulationFactory, world: str, outcome: ErrandsOutcome, path: Path) -> None:
     """Draw the tour and the drives of one robot in a world, and write the picture to `path`. Raises OSError."""
-    figure = Figure(figsize=(7.2, 8.0), layout="constrained")
-    axes = figure.subplots()
+    figure, (axes,) = panels_of(1, 1, (7.2, 8.0))
     label = f"led about, {outcome.teaching_s:.0f} s"
     draw_trail(axes, outcome.led, label, colour=_LED, zorder=2)
     goals = len(outcome.errands)

@@ -100,18 +100,18 @@ def _path(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
     axes.add_collection(LineCollection(lines, colors=shades, linewidths=2.4, capstyle="round", zorder=3))
     first, last = samples[0], samples[-1]
     draw_arrows(axes, [(each.x_m, each.y_m) for each in samples], _ARROW_EVERY_M, INK)
-    for end, colour in ((first, START), (last, END)):
-        draw_robot(axes, (end.x_m, end.y_m, end.heading_rad), timeline.outline_m, colour)
-    axes.annotate("begin", (first.x_m, first.y_m), xytext=(9, -13), textcoords="offset points", fontsize=9, color=INK)
-    axes.annotate("end", (last.x_m, last.y_m), xytext=(9, -10), textcoords="offset points", fontsize=9, color=INK)
+    for end, colour, name in ((first, START, "begin"), (last, END, "end")):
+        place = end.x_m, end.y_m
+        draw_robot(axes, (*place, end.heading_rad), timeline.outline_m, colour)
+        axes.annotate(name, place, xytext=(0, -34), textcoords="offset points", ha="center", fontsize=9, color=INK)
     asked = kind_intervals(timeline, Kind.ASKS)
     for number, (from_s, _) in enumerate(asked, start=1):
-        place = _at(samples, from_s)
-        draw_marks(axes, [(place.x_m, place.y_m)], ())
+        asked_at = _at(samples, from_s)
+        draw_marks(axes, [(asked_at.x_m, asked_at.y_m)], ())
         if len(asked) <= _MOST_NUMBERED:
             axes.annotate(
                 str(number),
-                (place.x_m, place.y_m),
+                (asked_at.x_m, asked_at.y_m),
                 xytext=(5, 5),
                 textcoords="offset points",
                 fontsize=8.5,
