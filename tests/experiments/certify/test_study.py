@@ -138,7 +138,7 @@ def test_worst_runs_are_driven_again_and_drawn(made: Made, tmp_path: Path, monke
     draw_together([job], [row(seed=seed, collisions=seed // 24) for seed in range(1, 25)])
     (axes,) = drawn[0].axes
     assert drawn[0].get_suptitle() == "23 of 24, at least 80%"
-    assert axes.get_title().endswith(f": {worst[0].seed}")
+    assert axes.get_title().endswith(f": run {worst[0].seed}")
     (drive,) = job.results.read(job, BlockOutcome).drives
     assert tuple(np.asarray(axes.lines[0].get_xydata())[-1]) == drive.trail[-1][:2]
     with pytest.raises(BatchDiffersError, match=rf"run {worst[0].seed} in world"):
