@@ -10,6 +10,7 @@ from hal.guard import Guard
 from hal.guard_reason import GuardReason
 
 POLL_S = 0.01
+"""Time between two brakes, and longest lateness of the first one, in s."""
 
 
 class Watchdog:
@@ -77,8 +78,15 @@ class Watchdog:
     ) -> None:
         self.stop()
 
+    def _pause_s(self) -> float:
+        """Return the time until ticks can have ceased, in s: a look at each tick would take a twentieth of a tick."""
+        beat_s = self._beat_s
+        if beat_s is None:
+            return POLL_S
+        return min(max(POLL_S, beat_s + self._ticks_ceased_s - self._clock()), self._ticks_ceased_s)
+
     def _watch(self) -> None:
-        while not self._stopping.wait(POLL_S):
+        while not self._stopping.wait(self._pause_s()):
             if self.check(self._clock()):
                 # At every poll: a full queue may refuse one brake frame, and the controller forgets after 200 ms.
                 self._guard.emergency_stop(GuardReason.TICKS_CEASED)

@@ -58,6 +58,20 @@ def test_the_thread_brakes_again_and_again_while_no_tick_comes(ends: Ends) -> No
     assert set(brakes) == {RawControl(RawSide(0, brake=True), RawSide(0, brake=True))}
 
 
+def test_the_thread_sleeps_until_ticks_can_have_ceased(ends: Ends) -> None:
+    clock = VirtualClock()
+    looks = threading.Semaphore(0)
+
+    def observed_clock() -> float:
+        looks.release()
+        return clock()
+
+    with Watchdog(guard_on(ROBOT, ends[0]), 60.0, observed_clock) as watchdog:
+        watchdog.beat()
+        _wait_for(looks, 3)  # the beat's own, and two of the look that sees it
+        assert not looks.acquire(timeout=0.1)
+
+
 def test_a_restart_waits_for_a_beat_again(ends: Ends) -> None:
     guard = guard_on(ROBOT, ends[0])
     watchdog = Watchdog(guard, 0.1)
