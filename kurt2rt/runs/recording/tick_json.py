@@ -21,6 +21,7 @@ from kurt2rt.runs.recording.recording_error import RecordingError
 _INPUTS: dict[str, type[Input]] = {kind.__name__: kind for kind in (*get_args(Command), *get_args(SystemEvent))}
 _KEYS = {"wheel_speeds": "wheels"}
 """Keys of fields that are named otherwise in JSON."""
+_JSON = json.JSONEncoder(allow_nan=False, check_circular=False, separators=(",", ":"))
 
 
 def encode_tick(entry: TickEntry) -> bytes:
@@ -29,7 +30,7 @@ def encode_tick(entry: TickEntry) -> bytes:
     Raises RecordingError for an event that cannot be written.
     """
     try:
-        content = _plain(entry._replace(commands=(), events=()))
+        content = _plain(entry)
         for name in ("commands", "results", "events", "saved"):
             if not content[name]:
                 del content[name]
@@ -41,7 +42,10 @@ def encode_tick(entry: TickEntry) -> bytes:
             del content["readings"]["time_s"]
         if entry.decision.asks_at == BASIC:
             del content["decision"]["asks_at"]
-        return json.dumps(content, allow_nan=False, separators=(",", ":")).encode()
+        try:
+            return _JSON.encode(content).encode()
+        except ValueError:
+            return _JSON.encode(_finite(content)).encode()
     except (KnowledgeError, ValueError, TypeError) as error:
         raise RecordingError(f"tick {entry.tick} cannot be written: {error}") from error
 
@@ -61,16 +65,18 @@ def decode_tick(data: bytes) -> TickEntry:
 
 
 def _plain(value: Any) -> Any:
-    """Return a value as JSON: a named tuple as an object without absent fields, an infinity as a text."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else repr(float(value))
-    if isinstance(value, tuple):
-        fields = getattr(value, "_fields", None)
-        if fields is None:
-            return [_plain(each) for each in value]
-        named = zip(fields, value, strict=True)
-        return {_KEYS.get(name, name): _plain(each) for name, each in named if each is not None}
-    return value
+    """Return a named tuple as an object of JSON without absent fields, and any other value as it is."""
+    if not isinstance(value, tuple):
+        return value
+    if not hasattr(value, "_fields"):
+        return [_plain(each) for each in value] if value and isinstance(value[0], tuple) else value
+    named = zip(_keys_of(type(value)), value, strict=True)
+    return {key: _plain(each) for key, each in named if each is not None}
+
+
+@cache
+def _keys_of(kind: Any) -> tuple[str, ...]:
+    return tuple(_KEYS.get(name, name) for name in kind._fields)
 
 
 def tick_properties() -> dict[str, Any]:
@@ -172,6 +178,6 @@ def _finite(value: Any) -> Any:
             return value if math.isfinite(value) else repr(value)
         case dict():
             return {key: _finite(each) for key, each in value.items()}
-        case list():
+        case list() | tuple():
             return [_finite(each) for each in value]
     return value
