@@ -19,17 +19,23 @@ from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.study.pool import PoolProgress
 
 
+def _progress(*, transient: bool) -> Progress:
+    """Return bars of 80 columns, on standard error: standard output holds results alone."""
+    columns = (
+        TextColumn("{task.description}", table_column=Column(no_wrap=True, overflow="ellipsis")),
+        BarColumn(bar_width=15),
+        # As wide as they become: else a long name cuts their digits off.
+        TaskProgressColumn(table_column=Column(min_width=4, no_wrap=True)),
+        TimeElapsedColumn(table_column=Column(min_width=7, no_wrap=True)),
+        TimeRemainingColumn(table_column=Column(min_width=7, no_wrap=True)),
+    )
+    return Progress(*columns, console=Console(stderr=True), transient=transient)
+
+
 @contextmanager
 def job_bars() -> Iterator[Report]:
-    """Yield a callback that shows a bar for each job, on standard error: standard output holds results alone."""
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.completed:4.0f} of {task.total:.0f} s robot time"),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True)) as progress:
+    """Yield a callback that shows a bar for each job."""
+    with _progress(transient=False) as progress:
         bars: dict[str, TaskID] = {}
 
         def report(what: str, done_s: float, whole_s: float) -> None:
@@ -41,7 +47,7 @@ def job_bars() -> Iterator[Report]:
 
 
 class OneBar:
-    """One bar for all jobs, on standard error, so that standard output holds results alone."""
+    """One bar for all jobs."""
 
     def __init__(self, progress: Progress, whole_s: float) -> None:
         self._progress = progress
@@ -69,14 +75,6 @@ class OneBar:
 
 @contextmanager
 def one_bar(whole_s: float) -> Iterator[OneBar]:
-    """Yield one bar for all jobs, of `whole_s` seconds of robot time, on standard error; it goes when they are done."""
-    columns = (
-        TextColumn("{task.description}", table_column=Column(no_wrap=True, overflow="ellipsis")),
-        BarColumn(bar_width=15),
-        # As wide as they become: else a long name cuts their digits off.
-        TaskProgressColumn(table_column=Column(min_width=4, no_wrap=True)),
-        TimeElapsedColumn(table_column=Column(min_width=7, no_wrap=True)),
-        TimeRemainingColumn(table_column=Column(min_width=7, no_wrap=True)),
-    )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+    """Yield one bar for all jobs, of `whole_s` seconds of robot time; it goes when they are done."""
+    with _progress(transient=True) as progress:
         yield OneBar(progress, whole_s)

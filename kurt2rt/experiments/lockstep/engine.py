@@ -13,6 +13,8 @@ _DriveT = TypeVar("_DriveT")
 
 WITNESS_SHARE = 0.01
 LEAST_WITNESSES = 3
+MOST_WITNESSES = 20
+"""More would take longer on the bus than ten thousand drives in the batch."""
 
 
 class Engine(StrEnum):
@@ -45,7 +47,7 @@ ON_BUS = Engines()
 
 
 def choose_witnesses(drives: Sequence[_DriveT], of: str, *, least: int = LEAST_WITNESSES) -> list[_DriveT]:
-    """Return 1 % of the drives of a study, by chance.
+    """Return 1 % of the drives of a study, at most 20, by chance.
 
     The order of the drives decides nothing, and most drives that are chosen stay so in a larger study.
 
@@ -54,5 +56,5 @@ def choose_witnesses(drives: Sequence[_DriveT], of: str, *, least: int = LEAST_W
         of: seed of the chance.
         least: number of witnesses of a small study; all of its drives if there are fewer.
     """
-    wanted = min(len(drives), max(least, math.ceil(WITNESS_SHARE * len(drives))))
+    wanted = min(max(least, math.ceil(WITNESS_SHARE * len(drives))), MOST_WITNESSES)
     return sorted(drives, key=lambda drive: hashlib.sha256(f"witness of {of}: {drive}".encode()).digest())[:wanted]

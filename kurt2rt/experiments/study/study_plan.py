@@ -173,7 +173,7 @@ class StudyPlan(Generic[AboutT]):
         return tuple(job for job in self.jobs if isinstance(job, kind))
 
     def driven(self, asked: EngineRequest, robot: RobotSettings) -> Self:
-        """Return the plan with jobs that this engine drives, and witnesses of 1 % of those in a batch, at least three.
+        """Return the plan with jobs that this engine drives, and witnesses of 1 % of those in a batch, three to twenty.
 
         A task that the batch does not know is driven on the CAN bus. `AUTO` is a batch if that saves time. Raises
         config.settings.SettingsError if settings of a task do not fit each other.

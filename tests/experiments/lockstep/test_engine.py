@@ -12,8 +12,8 @@ from kurt2rt.experiments.lockstep.exam import ExamSetup
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 
 
-def test_choose_witnesses_takes_one_percent_at_least_three() -> None:
-    assert [len(choose_witnesses(range(drives), "a")) for drives in (0, 2, 20, 300, 301)] == [0, 2, 3, 3, 4]
+def test_choose_witnesses_takes_one_percent_of_three_to_twenty() -> None:
+    assert [len(choose_witnesses(range(drives), "a")) for drives in (0, 2, 20, 300, 301, 3000)] == [0, 2, 3, 3, 4, 20]
     assert [len(choose_witnesses(range(drives), "a", least=1)) for drives in (2, 101)] == [1, 2]
 
 
