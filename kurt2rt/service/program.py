@@ -20,7 +20,7 @@ from kurt2rt.core.teaching.question import MidQuestion, Question
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.platform.malloc import pin_mmap_threshold
+from kurt2rt.platform.memory import pin_mmap_threshold
 from kurt2rt.platform.realtime_priority import set_sched_fifo
 from kurt2rt.runs.recording.can_log import CanLog, open_can_log
 from kurt2rt.runs.recording.recording import Recording

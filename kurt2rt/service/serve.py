@@ -26,6 +26,7 @@ from kurt2rt.knowledge.journal.loading import OpenedKnowledge, open_for_teaching
 from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
 from kurt2rt.platform.clock import Clock
 from kurt2rt.platform.gc_control import gc_frozen
+from kurt2rt.platform.memory import use_huge_pages
 from kurt2rt.platform.simulated_clock import HeldWorld, SimulatedClock, Speed
 from kurt2rt.platform.switch_interval import short_switch_interval
 from kurt2rt.platform.timerfd_clock import TimerfdClock
@@ -237,6 +238,7 @@ class _Run:
         callbacks = (stop_wheels, runtime.scheduler.end, context.notifier.stopping)
         context.shutdown.stage = ShutdownStage.LOOP
         with gc_frozen(), short_switch_interval(), self._health, context.shutdown.on_shutdown(*callbacks):
+            use_huge_pages()
             try:
                 await runtime.scheduler.run(ticks, after_tick)
             finally:

@@ -8,7 +8,7 @@ from statistics import median
 
 import pytest
 
-from kurt2rt.platform.malloc import pin_mmap_threshold
+from kurt2rt.platform.memory import pin_mmap_threshold
 from tests.faults.soak import Soak
 from tests.faults.table import CASES
 
