@@ -16,6 +16,7 @@ END = "#0b3d6b"
 _COLLIDED = "#111111"
 _CARRIED_M = 0.5
 """A robot that is so far from where it was 0.2 s ago was set down elsewhere."""
+_MOST_ARROWS = 50
 
 Place = tuple[float, ...]
 """x and y in m; of a pose also the heading in rad, counter-clockwise from x."""
@@ -49,15 +50,17 @@ def draw_trail(
 
 
 def draw_arrows(axes: Axes, trail: Sequence[Place], apart_m: float, colour: str = TRAIL) -> None:
-    """Draw arrows along a way, each `apart_m` after the one before."""
+    """Draw arrows along a way, each `apart_m` after the one before, or more if they would be too many."""
     look = {"arrowstyle": "-|>", "color": colour, "mutation_scale": 13, "shrinkA": 0, "shrinkB": 0}
+    steps = [each for way in ways(trail) for each in pairwise(way)]
+    lengths_m = [math.dist(here[:2], there[:2]) for here, there in steps]
+    apart_m = max(apart_m, sum(lengths_m) / _MOST_ARROWS)
     gone_m = apart_m / 2
-    for way in ways(trail):
-        for here, there in pairwise(way):
-            gone_m += math.dist(here[:2], there[:2])
-            if gone_m >= apart_m:
-                gone_m = 0.0
-                axes.annotate("", (there[0], there[1]), (here[0], here[1]), arrowprops=look, zorder=3)
+    for (here, there), length_m in zip(steps, lengths_m, strict=True):
+        gone_m += length_m
+        if gone_m >= apart_m:
+            gone_m = 0.0
+            axes.annotate("", (there[0], there[1]), (here[0], here[1]), arrowprops=look, zorder=3)
 
 
 def draw_marks(axes: Axes, asked: Sequence[Place], collided: Sequence[Place]) -> None:

@@ -66,7 +66,7 @@ def _draw_exam(panel: Axes, exam: DriveRow, factory: SimulationFactory) -> None:
     legend_below(panel)
     verdict = "success" if exam.passed else exam.verdict.text
     panel.set_title(
-        f"Exam in world {label_of(exam.world)}: {exam.progress:.1f} {exam.unit}, {exam.collisions} collisions, "
+        f"Exam in world {label_of(exam.world)}:\n{exam.progress:.1f} {exam.unit}, {exam.collisions} collisions, "
         f"{verdict}"
     )
 

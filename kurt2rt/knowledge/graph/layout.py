@@ -11,9 +11,9 @@ Place = tuple[float, float]
 Places = dict[int, Place]
 """RLA id -> (x, y) in units of the picture."""
 
-APART = 1.0
-"""Smallest distance of two RLAs, in units of the picture."""
-_ROOM = 2.5
+APART = 1.25
+"""Smallest distance of two RLAs at known places, in sides of a tile: no corner lies on another tile."""
+_ROOM = 2.0
 """Side of the square that each RLA has on average in a layout by known places."""
 _GAP = 0.7
 """Room between groups."""

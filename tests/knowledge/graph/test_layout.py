@@ -13,7 +13,7 @@ from kurt2rt.knowledge.graph.layout import APART, place_groups, place_known, spa
 def test_place_groups_keeps_groups_together_and_tiles_apart() -> None:
     groups = [list(range(start, start + size)) for start, size in ((0, 25), (100, 7), (200, 7), (300, 1))]
     places = place_groups(groups)
-    assert min(math.dist(one, other) for one, other in itertools.combinations(places.values(), 2)) >= APART
+    assert min(math.dist(one, other) for one, other in itertools.combinations(places.values(), 2)) >= 1.0
     for ids in groups:
         (low_x, high_x), (low_y, high_y) = span({each: places[each] for each in ids})
         within = [each for each, (x, y) in places.items() if low_x <= x <= high_x and low_y <= y <= high_y]
