@@ -4,15 +4,15 @@ import math
 from threading import RLock
 
 from hal.bus import BusError
+from hal.guard_limits import LONGEST_SLEW_CYCLES, REASONS, SLEW_LIMIT, bounded, limits_of, slewed
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
-from hal.robot_settings import BumperEnd, RobotSettings
+from hal.robot_settings import RobotSettings
 from hal.wheel_port import WheelPort
 
 _UNCONFIRMED = 2
 """Own messages not yet carried by the link. A set point behind two of them reaches the motors after 20 ms or more.
 A brake is never too old."""
-_LONGEST_SLEW_CYCLES = 2  # a late tick must not turn into a jump of the set point
 
 
 class Guard:
@@ -28,17 +28,12 @@ class Guard:
         """Send through `port`, which belongs to this guard alone from now on."""
         limits = robot.guard
         self._port = port
-        self._maximum_speed_m_s = limits.maximum_speed_m_s
-        self._acceleration_m_s2 = limits.acceleration_m_s2
-        self._braking_m_s2 = limits.braking_m_s2
+        self._limits = limits_of(robot)
         self._command_age_s = limits.command_age_s
         self._stale_infrared_s = limits.stale_infrared_s
         self._stale_encoder_s = limits.stale_encoder_s
         # A robot without bumpers need not report them.
         self._stale_bumper_s = limits.stale_bumper_s if robot.bumpers else math.inf
-        self._cycle_s = robot.cycle_s
-        self._front_bits = _bumper_bits(robot, BumperEnd.FRONT)
-        self._rear_bits = _bumper_bits(robot, BumperEnd.REAR)
         # Reentrant, because a signal handler may stop the robot during the same thread's drive().
         self._lock = RLock()
         self._latched: GuardReason | None = None
@@ -81,7 +76,7 @@ class Guard:
             left_m_s, right_m_s = wanted
             stand = self._reason_to_stand(left_m_s, right_m_s, readings, decided_at_s, now_s)
             if stand is None:
-                reasons = self._limit(left_m_s, right_m_s, readings.bumpers, now_s)
+                reasons = self._limit((left_m_s, right_m_s), readings.bumpers, now_s)
             else:
                 reasons = (stand,)
                 self._left_m_s = self._right_m_s = 0.0
@@ -135,45 +130,16 @@ class Guard:
             return GuardReason.BUMPER_STALE
         return None
 
-    def _limit(self, left_m_s: float, right_m_s: float, bumpers: int, now_s: float) -> tuple[GuardReason, ...]:
+    def _limit(self, wanted: tuple[float, float], bumpers: int, now_s: float) -> tuple[GuardReason, ...]:
         """Move the set points toward the wanted speeds within the limits; return the limits that were met."""
-        reasons: tuple[GuardReason, ...] = ()
-        fastest_m_s = max(abs(left_m_s), abs(right_m_s))
-        if fastest_m_s > self._maximum_speed_m_s:
-            share = self._maximum_speed_m_s / fastest_m_s  # of both sides, so that the curve is kept
-            left_m_s *= share
-            right_m_s *= share
-            reasons = (GuardReason.SPEED_LIMIT,)
-        from_left_m_s, from_right_m_s = self._left_m_s, self._right_m_s
-        if bumpers:
-            # The old set points too: slewing down from them would go on pushing.
-            if bumpers & self._front_bits:
-                if left_m_s > 0.0 or right_m_s > 0.0:
-                    reasons += (GuardReason.FRONT_BUMPER,)
-                left_m_s, right_m_s = min(left_m_s, 0.0), min(right_m_s, 0.0)
-                from_left_m_s, from_right_m_s = min(from_left_m_s, 0.0), min(from_right_m_s, 0.0)
-            if bumpers & self._rear_bits:
-                if left_m_s < 0.0 or right_m_s < 0.0:
-                    reasons += (GuardReason.REAR_BUMPER,)
-                left_m_s, right_m_s = max(left_m_s, 0.0), max(right_m_s, 0.0)
-                from_left_m_s, from_right_m_s = max(from_left_m_s, 0.0), max(from_right_m_s, 0.0)
-        elapsed_s = min(now_s - self._driven_at_s, _LONGEST_SLEW_CYCLES * self._cycle_s)
-        self._left_m_s = self._slewed(from_left_m_s, left_m_s, elapsed_s)
-        self._right_m_s = self._slewed(from_right_m_s, right_m_s, elapsed_s)
+        limits, present = self._limits, (self._left_m_s, self._right_m_s)
+        left_m_s, right_m_s, from_left_m_s, from_right_m_s, met = bounded(wanted, present, bumpers, limits)
+        elapsed_s = min(now_s - self._driven_at_s, LONGEST_SLEW_CYCLES * limits.cycle_s)
+        self._left_m_s = slewed(from_left_m_s, left_m_s, elapsed_s, limits)
+        self._right_m_s = slewed(from_right_m_s, right_m_s, elapsed_s, limits)
         if self._left_m_s != left_m_s or self._right_m_s != right_m_s:
-            reasons += (GuardReason.SLEW_LIMIT,)
-        return reasons
-
-    def _slewed(self, from_m_s: float, to_m_s: float, elapsed_s: float) -> float:
-        if to_m_s == from_m_s or to_m_s == 0.0:
-            return to_m_s  # a stop is not slewed: the controller brakes by itself
-        if from_m_s * to_m_s < 0.0:
-            to_m_s = 0.0  # a wheel comes to rest before it turns the other way
-        speeds_up = abs(to_m_s) > abs(from_m_s)
-        step_m_s = (self._acceleration_m_s2 if speeds_up else self._braking_m_s2) * elapsed_s
-        if to_m_s > from_m_s:
-            return min(to_m_s, from_m_s + step_m_s)
-        return max(to_m_s, from_m_s - step_m_s)
+            met |= SLEW_LIMIT
+        return REASONS[met]
 
     def _latch(self, reason: GuardReason) -> None:
         if self._latched is None:
@@ -194,7 +160,3 @@ class Guard:
     def _note(self, error: BusError) -> None:
         self._send_failures += 1
         self._bus_trouble = str(error)
-
-
-def _bumper_bits(robot: RobotSettings, end: BumperEnd) -> int:
-    return sum(1 << bit for bit, bumper in enumerate(robot.bumpers) if bumper.end is end)

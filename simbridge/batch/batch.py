@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.guard_reason import GuardReason
+from hal.guard_limits import REASONS
 from hal.kurt2_settings import Kurt2Settings
 from simbridge.batch.asking import PythonMind
 from simbridge.batch.borders import area_of
@@ -24,7 +24,6 @@ from simbridge.batch.record import (
     UNDECIDED,
     restart_window,
 )
-from simbridge.batch.safety import FRONT_BUMPER, REAR_BUMPER, SLEW_LIMIT, SPEED_LIMIT
 from simbridge.batch.setup import build_laws, build_robots
 from simbridge.batch.tables import ON_THE_BUS, build_knowledge, empty_averages, require_known
 from simbridge.contracts.areas import Borders
@@ -51,15 +50,6 @@ _REASONS = {
     CROWDED: "too many walls are near",
     UNDECIDED: "what decides in Python raised an error",
 }
-
-_LIMIT_BITS = {
-    SPEED_LIMIT: GuardReason.SPEED_LIMIT,
-    FRONT_BUMPER: GuardReason.FRONT_BUMPER,
-    REAR_BUMPER: GuardReason.REAR_BUMPER,
-    SLEW_LIMIT: GuardReason.SLEW_LIMIT,
-}
-_LIMITS = [tuple(reason for bit, reason in _LIMIT_BITS.items() if bits & bit) for bits in range(2 * SLEW_LIMIT)]
-"""Reasons of the guard, by the bits of the limits that were met."""
 
 
 _MOVING = (
@@ -255,7 +245,7 @@ class RobotBatch:
         names = ("left_ticks", "right_ticks", "bumpers", "limits")
         left_ticks, right_ticks, bumpers, limits = (record[f"track_{name}"][:end].tolist() for name in names)
         counts = list(map(tuple, record["track_counts"][:end].tolist()))
-        return Trace(counts, left_ticks, right_ticks, bumpers, [_LIMITS[each] for each in limits])
+        return Trace(counts, left_ticks, right_ticks, bumpers, [REASONS[each] for each in limits])
 
     def state_hash(self, robot: int, laps: float) -> str:
         """Return the state hash of a robot, as the simulated robot on the CAN bus has it after these ticks.

@@ -28,7 +28,7 @@ _SOURCES = (
     _ROOT / "behaviors" / "keep_distance.py",
     _ROOT / "simbridge" / "robot" / "wheels.py",
     *sorted(_ROOT.glob("simbridge/contracts/*.py")),
-    *(_ROOT / "hal" / f"{name}.py" for name in ("infrared_law", "numerics", "sensor_signs")),
+    *(_ROOT / "hal" / f"{name}.py" for name in ("guard_limits", "infrared_law", "numerics", "sensor_signs")),
 )
 """Files with functions that are compiled, and with the constants in them."""
 

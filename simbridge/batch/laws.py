@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from behaviors.policies import circle, eight, fleeing, streets, wall_following
+from hal.guard_limits import GuardLimits
 from hal.infrared_law import InfraredLawNumbers
 from simbridge.robot.wheels import SideLaw
 
@@ -70,18 +71,6 @@ class WatchLaw(NamedTuple):
     bias_counts: float
     metres_per_tick: float
     track_m: float
-
-
-class GuardLaw(NamedTuple):
-    """Limits and bumpers of the guard for the compiled loop, which repeats hal.guard.Guard."""
-
-    cycle_s: float
-    maximum_speed_m_s: float
-    acceleration_m_s2: float
-    braking_m_s2: float
-    front_bits: int
-    """Bumpers in front."""
-    rear_bits: int
 
 
 class MindLaw(NamedTuple):
@@ -189,6 +178,6 @@ class Laws(NamedTuple):
     ticks_per_speed: float
     sensor: SensorLaw
     watch: WatchLaw
-    guard: GuardLaw
+    guard: GuardLimits
     mind: MindLaw
     stuck: StuckLaw

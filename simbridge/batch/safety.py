@@ -7,6 +7,7 @@ within its band (tests/simbridge/batch/test_laws.py).
 
 import math
 
+from hal.guard_limits import LONGEST_SLEW_CYCLES, SLEW_LIMIT, GuardLimits, bounded, slewed
 from hal.sensor_signs import (
     AGREES_COUNTS,
     DARK_DIFFERS_COUNTS,
@@ -23,7 +24,7 @@ from hal.sensor_signs import (
     SWING_COUNTS,
 )
 from simbridge.batch.compiled import compiled
-from simbridge.batch.laws import GuardLaw, Integers, WatchLaw
+from simbridge.batch.laws import Integers, WatchLaw
 from simbridge.batch.record import SIGNS, Robot
 
 _LOW, _HIGH, _QUIET_LOW, _QUIET_HIGH, _BEFORE_LOW, _BEFORE_HIGH, _AFTER_LOW, _AFTER_HIGH = range(8)
@@ -32,9 +33,9 @@ UNSEEN = -1000
 """First value of the bands of `hal.sensor_signs`."""
 _ROUNDING = 1e-6
 """Set points are truncated to whole cm/s beyond this (hal.control)."""
-_LONGEST_SLEW_CYCLES = 2
-SPEED_LIMIT, FRONT_BUMPER, REAR_BUMPER, SLEW_LIMIT = 1, 2, 4, 8
-"""Bits of the limits that a set point met."""
+
+_bounded = compiled(bounded)
+_slewed = compiled(slewed)
 
 
 @compiled
@@ -164,50 +165,19 @@ def _shows_fault(robot: Robot, i: int, law: WatchLaw) -> bool:
 
 
 @compiled
-def drive_guarded(robot: Robot, wanted: tuple[float, float], now_s: float, law: GuardLaw) -> None:
+def drive_guarded(robot: Robot, wanted: tuple[float, float], now_s: float, limits: GuardLimits) -> None:
     """Move the set points of a robot toward wanted speeds in m/s within the guard's limits, and send CONTROL."""
-    left_m_s, right_m_s = wanted
-    fastest_m_s = max(abs(left_m_s), abs(right_m_s))
-    robot.limits = 0
-    if fastest_m_s > law.maximum_speed_m_s:
-        robot.limits |= SPEED_LIMIT
-        share = law.maximum_speed_m_s / fastest_m_s
-        left_m_s *= share
-        right_m_s *= share
-    from_left_m_s, from_right_m_s = robot.guarded_left_m_s, robot.guarded_right_m_s
-    if robot.bumpers & law.front_bits:
-        if left_m_s > 0.0 or right_m_s > 0.0:
-            robot.limits |= FRONT_BUMPER
-        left_m_s, right_m_s = min(left_m_s, 0.0), min(right_m_s, 0.0)
-        from_left_m_s, from_right_m_s = min(from_left_m_s, 0.0), min(from_right_m_s, 0.0)
-    if robot.bumpers & law.rear_bits:
-        if left_m_s < 0.0 or right_m_s < 0.0:
-            robot.limits |= REAR_BUMPER
-        left_m_s, right_m_s = max(left_m_s, 0.0), max(right_m_s, 0.0)
-        from_left_m_s, from_right_m_s = max(from_left_m_s, 0.0), max(from_right_m_s, 0.0)
-    elapsed_s = min(now_s - robot.driven_at_s, _LONGEST_SLEW_CYCLES * law.cycle_s)
-    wanted_left_m_s, wanted_right_m_s = left_m_s, right_m_s
-    left_m_s = slewed(from_left_m_s, left_m_s, elapsed_s, law)
-    right_m_s = slewed(from_right_m_s, right_m_s, elapsed_s, law)
-    if left_m_s != wanted_left_m_s or right_m_s != wanted_right_m_s:
-        robot.limits |= SLEW_LIMIT
+    present = robot.guarded_left_m_s, robot.guarded_right_m_s
+    to_left_m_s, to_right_m_s, from_left_m_s, from_right_m_s, met = _bounded(wanted, present, robot.bumpers, limits)
+    elapsed_s = min(now_s - robot.driven_at_s, LONGEST_SLEW_CYCLES * limits.cycle_s)
+    left_m_s = _slewed(from_left_m_s, to_left_m_s, elapsed_s, limits)
+    right_m_s = _slewed(from_right_m_s, to_right_m_s, elapsed_s, limits)
+    if left_m_s != to_left_m_s or right_m_s != to_right_m_s:
+        met |= SLEW_LIMIT
+    robot.limits = met
     robot.guarded_left_m_s, robot.guarded_right_m_s = left_m_s, right_m_s
     robot.driven_at_s = now_s
     left, right = left_m_s * 100.0, right_m_s * 100.0
     robot.left_cm_s = int(left + math.copysign(_ROUNDING, left))
     robot.right_cm_s = int(right + math.copysign(_ROUNDING, right))
     robot.turned = 1 if robot.left_cm_s != 0 or robot.right_cm_s != 0 else 0
-
-
-@compiled
-def slewed(from_m_s: float, to_m_s: float, elapsed_s: float, law: GuardLaw) -> float:
-    """Return the set point of one side after `elapsed_s` on its way between two speeds in m/s (hal.guard)."""
-    if to_m_s == from_m_s or to_m_s == 0.0:
-        return to_m_s
-    if from_m_s * to_m_s < 0.0:
-        to_m_s = 0.0
-    speeds_up = abs(to_m_s) > abs(from_m_s)
-    step_m_s = (law.acceleration_m_s2 if speeds_up else law.braking_m_s2) * elapsed_s
-    if to_m_s > from_m_s:
-        return min(to_m_s, from_m_s + step_m_s)
-    return max(to_m_s, from_m_s - step_m_s)

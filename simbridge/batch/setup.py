@@ -16,14 +16,14 @@ from behaviors.policies.distances import (
     REAR_RIGHT_EDGE,
     RIGHT_FRONT_TO_BACK,
 )
+from hal.guard_limits import limits_of
 from hal.kurt2_settings import Kurt2Settings
 from hal.robot import HIGHEST_COUNTS
-from hal.robot_settings import BumperEnd
 from hal.sensor_ring import neighbours_of
 from hal.sensor_signs import HIGHEST, LOWEST, STUCK_TIMES, beam_of
 from simbridge.batch.borders import OUTSIDE
 from simbridge.batch.contacts import keep_box
-from simbridge.batch.laws import BodyLaw, Floats, GuardLaw, Laws, MindLaw, SensorLaw, StuckLaw, WatchLaw, World
+from simbridge.batch.laws import BodyLaw, Floats, Laws, MindLaw, SensorLaw, StuckLaw, WatchLaw, World
 from simbridge.batch.record import Robots, Sizes, empty_robots
 from simbridge.batch.safety import UNSEEN
 from simbridge.batch.tables import kind_of
@@ -70,22 +70,10 @@ def build_laws(robot: Kurt2Settings, one: SimulatedKurt2, minds: Sequence[Mind],
             noise_least=float(robot.infrared.noise_least_counts),
         ),
         watch=build_watch_law(robot),
-        guard=GuardLaw(
-            cycle_s=cycle_s,
-            maximum_speed_m_s=robot.guard.maximum_speed_m_s,
-            acceleration_m_s2=robot.guard.acceleration_m_s2,
-            braking_m_s2=robot.guard.braking_m_s2,
-            front_bits=bumper_bits(robot, BumperEnd.FRONT),
-            rear_bits=bumper_bits(robot, BumperEnd.REAR),
-        ),
+        guard=limits_of(robot),
         mind=_mind_law(robot, minds, settings),
         stuck=StuckLaw(1, 0, 0.0) if settings.stuck is None else StuckLaw(*settings.stuck),
     )
-
-
-def bumper_bits(robot: Kurt2Settings, end: BumperEnd) -> int:
-    """Return the bits of the bumpers at one end of a robot."""
-    return sum(1 << bit for bit, bumper in enumerate(robot.bumpers) if bumper.end is end)
 
 
 def build_body_law(robot: Kurt2Settings, body: Body) -> BodyLaw:

@@ -2,7 +2,6 @@
 
 import math
 import random
-import uuid
 from typing import Any
 
 import pytest
@@ -10,13 +9,14 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.bus import open_bus
+from hal.guard_limits import bounded, limits_of, slewed
 from hal.robot import SensorReadings, WheelSpeeds
 from hal.sensor_watch import SensorWatch
 from hal.wheel_watch import WheelWatch
 from kurt2rt.core.task_settings import load_task
-from simbridge.batch.laws import GuardLaw, World
-from simbridge.batch.safety import looks_broken, slewed
+from simbridge.batch.compiled import compiled
+from simbridge.batch.laws import World
+from simbridge.batch.safety import looks_broken
 from simbridge.batch.setup import build_body_law, build_robots, build_watch_law
 from simbridge.batch.sight import cast, gather, has_moved, may_touch
 from simbridge.contracts.batch import PolicyMind, TabledPolicy
@@ -24,8 +24,9 @@ from simbridge.contracts.simulation import Pose
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.wheels import Wheels
 from simbridge.simulated_robot import SimulatedKurt2
-from tests.hal.helpers import guard_on
 from tests.simbridge.batch.both_ways import FACTORY, ROBOT
+
+_bounded, _slewed = compiled(bounded), compiled(slewed)
 
 
 def _standing_in(world: str) -> tuple[SimulatedKurt2, Any, World]:
@@ -72,20 +73,19 @@ def test_may_touch_is_false_only_where_the_body_is_free(world: str) -> None:
     assert touched > 20
 
 
+_SPEEDS = st.floats(-0.6, 0.6) | st.just(0.0)
+
+
 @given(
-    from_m_s=st.floats(-0.6, 0.6),
-    to_m_s=st.floats(-0.6, 0.6) | st.just(0.0),
-    elapsed_s=st.floats(0.0, 0.02),
+    left_m_s=_SPEEDS, right_m_s=_SPEEDS, present_m_s=_SPEEDS, bumpers=st.integers(0, 15), elapsed_s=st.floats(0.0, 0.02)
 )
-def test_slew_is_that_of_the_guard(from_m_s: float, to_m_s: float, elapsed_s: float) -> None:
-    limits = ROBOT.guard
-    law = GuardLaw(ROBOT.cycle_s, limits.maximum_speed_m_s, limits.acceleration_m_s2, limits.braking_m_s2, 0, 0)
-    bus = open_bus(f"virtual:{uuid.uuid4()}")
-    try:
-        guard = guard_on(ROBOT, bus)
-        assert slewed(from_m_s, to_m_s, elapsed_s, law) == guard._slewed(from_m_s, to_m_s, elapsed_s)
-    finally:
-        bus.shutdown()
+def test_compiled_limits_round_as_those_of_the_guard(
+    left_m_s: float, right_m_s: float, present_m_s: float, bumpers: int, elapsed_s: float
+) -> None:
+    limits = limits_of(ROBOT)
+    asked = (left_m_s, right_m_s), (present_m_s, 0.0), bumpers, limits
+    assert _bounded(*asked) == bounded(*asked)
+    assert _slewed(present_m_s, left_m_s, elapsed_s, limits) == slewed(present_m_s, left_m_s, elapsed_s, limits)
 
 
 @given(seed=st.integers(0, 2**32 - 1), quiet=st.integers(0, 17))
