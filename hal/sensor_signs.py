@@ -1,71 +1,16 @@
-"""Signs that one infra-red sensor is broken: dead, stuck, unplugged, dark or seeing a phantom."""
+"""Signs that one infra-red sensor is broken: dead, stuck, unplugged, dark or seeing a phantom.
+
+The functions over counters are shared with the compiled loops of a batch, which keep them in arrays.
+"""
 
 import math
-from collections.abc import Container
+from collections.abc import Container, MutableSequence
 from enum import StrEnum
 from typing import NamedTuple
 
 from hal.odometry import WheelMotion
-from hal.robot_settings import InfraredSettings
+from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.sensor_ring import Neighbours
-
-_DARK_RATIO = 0.9
-"""Highest reading of a dark sensor, as a ratio of the reading right before a wall, where the law folds back."""
-_DIGITS = 12
-"""Sine and cosine differ in their last digits between platforms, and a replay compares bit for bit."""
-
-
-class Beam(NamedTuple):
-    """Sensor model: place and direction of a range sensor, and its law.
-
-    distance_m = numerator / (counts + bias) - offset, along `heading`. `motion_m` says how a standing obstacle moves
-    in the beam when the robot drives; `SensorSigns` compares that with the readings.
-    """
-
-    place: int
-    """Place in the sensor table."""
-    sine: float
-    """Sine of its heading."""
-    cosine: float
-    along_m: float
-    """Place of the sensor along its beam, from the robot's centre, in m."""
-    aside_m: float
-    """Place of the sensor across its beam, to the left, in m."""
-    numerator_counts_m: float
-    offset_m: float
-    bias_counts: float
-    dark_counts: float
-    """Lowest reading that may be of a sensor pressed against a wall, in counts."""
-
-    def motion_m(self, counts: float, motion: WheelMotion) -> tuple[float, float]:
-        """Return the motion of a standing obstacle that reads `counts` across the beam and along it, in m.
-
-        `motion`: of the wheels. To the left of the beam and away from the sensor are positive.
-        """
-        distance_m = self.numerator_counts_m / (counts + self.bias_counts) - self.offset_m
-        forward_m, turn_rad = motion.forward_m, motion.turn_rad
-        return (
-            forward_m * self.sine - turn_rad * (self.along_m + distance_m),
-            turn_rad * self.aside_m - forward_m * self.cosine,
-        )
-
-
-def beam_of(infrared: InfraredSettings, place: int) -> Beam:
-    """Return the beam of the sensor at `place` of the sensor table."""
-    sensor = infrared.sensors[place]
-    heading_rad = math.radians(sensor.heading_deg)
-    sine, cosine = round(math.sin(heading_rad), _DIGITS), round(math.cos(heading_rad), _DIGITS)
-    return Beam(
-        place=place,
-        sine=sine,
-        cosine=cosine,
-        along_m=sensor.x_m * cosine + sensor.y_m * sine,
-        aside_m=sensor.y_m * cosine - sensor.x_m * sine,
-        numerator_counts_m=infrared.numerator_counts_m,
-        offset_m=infrared.offset_m,
-        bias_counts=infrared.bias_counts,
-        dark_counts=_DARK_RATIO * infrared.counts_at(infrared.fold_back_to_m),
-    )
 
 
 class SensorFault(StrEnum):
@@ -120,12 +65,197 @@ KEEPS = 0.985
 """Part of that way that is kept from look to look, half after 2.3 s: slip and an unsure distance do not add up."""
 
 
+_DARK_RATIO = 0.9
+"""Highest reading of a dark sensor, as a ratio of the reading right before a wall, where the law folds back."""
+_DIGITS = 12
+"""Sine and cosine differ in their last digits between platforms, and a replay compares bit for bit."""
+
+
+class Beam(NamedTuple):
+    """Direction and place of a range sensor, as its beam sees them."""
+
+    sine: float
+    """Sine of its heading."""
+    cosine: float
+    along_m: float
+    """Place of the sensor along its beam, from the robot's centre, in m."""
+    aside_m: float
+    """Place of the sensor across its beam, to the left, in m."""
+
+
+def beam_of(infrared: InfraredSettings, place: int) -> Beam:
+    """Return the beam of the sensor at `place` of the sensor table."""
+    sensor = infrared.sensors[place]
+    heading_rad = math.radians(sensor.heading_deg)
+    sine, cosine = round(math.sin(heading_rad), _DIGITS), round(math.cos(heading_rad), _DIGITS)
+    return Beam(sine, cosine, sensor.x_m * cosine + sensor.y_m * sine, sensor.y_m * cosine - sensor.x_m * sine)
+
+
 class SensorLimits(NamedTuple):
-    """Limits that all sensors of a robot share: lowest and highest counts, and time without a change."""
+    """Limits and law that all sensors of a robot share: distance_m = numerator / (counts + bias) - offset."""
 
     lowest: float
+    """Lowest reading of a working sensor, in counts."""
     highest: float
     stuck_ticks: int
+    """Ticks of driving within STUCK_BAND until a sensor is stuck."""
+    dark_counts: float
+    """Lowest reading that may be of a sensor pressed against a wall, in counts."""
+    numerator_counts_m: float
+    offset_m: float
+    bias_counts: float
+
+
+def sensor_limits(robot: RobotSettings) -> SensorLimits:
+    """Return the limits of the sensors of a kind of robot."""
+    infrared = robot.infrared
+    return SensorLimits(
+        lowest=infrared.floor_counts * LOWEST,
+        highest=infrared.plateau_counts * HIGHEST,
+        stuck_ticks=round(STUCK_TIMES * robot.guard.frozen_infrared_s / robot.cycle_s),
+        dark_counts=_DARK_RATIO * infrared.counts_at(infrared.fold_back_to_m),
+        numerator_counts_m=infrared.numerator_counts_m,
+        offset_m=infrared.offset_m,
+        bias_counts=infrared.bias_counts,
+    )
+
+
+# Places of a sensor's counters. A band is its lowest reading, and its highest in the next place.
+_BAND, _QUIET, _BEFORE, _AFTER = 0, 2, 4, 6
+_DRIVEN, STILL_FROM, _LOW_TICKS, _HIGH_TICKS, _AGREED_TICKS, OUT_TICKS, _PASSES, _CHANGED, SIGNS = range(8, 17)
+"""SIGNS: number of counters."""
+UNSEEN = -1000
+"""Reading of the bands before the first one."""
+NO_SIGNS = (UNSEEN,) * 4 + (0,) * (SIGNS - 4)
+"""Counters of a sensor that was not looked at yet."""
+
+
+def widen(signs: MutableSequence[int], band: int, value: int) -> None:
+    """Widen a band of counts to hold `value`."""
+    if value < signs[band]:
+        signs[band] = value
+    elif value > signs[band + 1]:
+        signs[band + 1] = value
+
+
+def forget_contradictions(signs: MutableSequence[int], way_m: MutableSequence[float]) -> None:
+    """Forget the contradictions of a sensor with its neighbours."""
+    signs[_LOW_TICKS] = signs[_HIGH_TICKS] = signs[_AGREED_TICKS] = signs[_PASSES] = 0
+    way_m[0] = way_m[1] = 0.0
+
+
+def obstacle_motion_m(
+    counts: float, motion: tuple[float, float], beam: Beam, limits: SensorLimits
+) -> tuple[float, float]:
+    """Return the motion of a standing obstacle that reads `counts` across the beam and along it, in m.
+
+    `motion`: way ahead in m and turn in rad. To the left of the beam and away from the sensor are positive.
+    """
+    forward_m, turn_rad = motion
+    distance_m = limits.numerator_counts_m / (counts + limits.bias_counts) - limits.offset_m
+    across_m = forward_m * beam.sine - turn_rad * (beam.along_m + distance_m)
+    return across_m, turn_rad * beam.aside_m - forward_m * beam.cosine
+
+
+def compare_with_neighbours(
+    signs: MutableSequence[int],
+    way_m: MutableSequence[float],
+    readings: tuple[int, int, int, int, int],
+    drove: int,
+    motion: tuple[float, float],
+    beam: Beam,
+    limits: SensorLimits,
+) -> None:
+    """Compare a sensor's band of noise with its neighbours, after `drove` more ticks; arguments as `update_signs`."""
+    _, before, after, second_before, second_after = readings
+    if signs[_LOW_TICKS] or signs[_HIGH_TICKS]:
+        widen(signs, _BEFORE, before)
+        widen(signs, _AFTER, after)
+    else:  # a neighbour that jumped before the contradiction and is stuck since is no witness
+        signs[_BEFORE] = signs[_BEFORE + 1] = before
+        signs[_AFTER] = signs[_AFTER + 1] = after
+    low, high, nearest = signs[_QUIET], signs[_QUIET + 1], min(before, after)
+    if nearest > high:
+        if nearest - high > DARK_DIFFERS_COUNTS and high < limits.dark_counts:
+            if min(second_before, second_after) - high > AGREES_COUNTS:
+                signs[_AGREED_TICKS] += drove
+            signs[_LOW_TICKS] += drove
+    elif low - before > DIFFERS_COUNTS and low - after > DIFFERS_COUNTS:
+        signs[_HIGH_TICKS] += drove
+        # Unless a sensor next to a neighbour sees the obstacle, too.
+        if low - max(second_before, second_after) > DIFFERS_COUNTS:
+            across_m, toward_m = obstacle_motion_m((low + high) / 2, motion, beam, limits)
+            way_m[0] = KEEPS * way_m[0] + across_m
+            way_m[1] = KEEPS * way_m[1] + toward_m
+            if max(abs(way_m[0]), abs(way_m[1])) > PASSES_M:
+                signs[_PASSES] = 1
+
+
+def update_signs(
+    signs: MutableSequence[int],
+    way_m: MutableSequence[float],
+    readings: tuple[int, int, int, int, int],
+    driven: int,
+    motion: tuple[float, float],
+    beam: Beam,
+    limits: SensorLimits,
+    has_witnesses: bool,
+) -> bool:
+    """Look at a sensor, and return whether `fault_code` may find a sign.
+
+    Args:
+        signs: its SIGNS counters, which change.
+        way_m: way past what it sees, across its beam and along it, in m, which changes.
+        readings: counts of the sensor, of its neighbours before and after, and of the sensors next to those.
+        driven: ticks that the robot has driven.
+        motion: way ahead in m and turn in rad since the last look.
+        beam: of this sensor.
+        limits: of all sensors.
+        has_witnesses: whether its neighbours can contradict it.
+    """
+    value, before, after = readings[0], readings[1], readings[2]
+    drove = driven - signs[_DRIVEN]
+    signs[_DRIVEN] = driven
+    in_range = limits.lowest <= value <= limits.highest
+    signs[OUT_TICKS] = 0 if in_range else min(signs[OUT_TICKS] + LOOK_TICKS, RANGE_TICKS)
+    widen(signs, _BAND, value)
+    if signs[_BAND + 1] - signs[_BAND] > STUCK_BAND:
+        signs[_BAND] = signs[_BAND + 1] = value
+        signs[STILL_FROM] = driven
+    widen(signs, _QUIET, value)
+    if signs[_QUIET + 1] - signs[_QUIET] > QUIET_COUNTS + QUIET_RATIO * signs[_QUIET + 1]:
+        # It has changed by more than noise.
+        signs[_QUIET] = signs[_QUIET + 1] = value
+        signs[_BEFORE] = signs[_BEFORE + 1] = before
+        signs[_AFTER] = signs[_AFTER + 1] = after
+        forget_contradictions(signs, way_m)
+        signs[_CHANGED] = 1
+    elif drove and has_witnesses:
+        compare_with_neighbours(signs, way_m, readings, drove, motion, beam, limits)
+    still = driven - signs[STILL_FROM] >= limits.stuck_ticks
+    return signs[_LOW_TICKS] > 0 or signs[_HIGH_TICKS] > 0 or signs[OUT_TICKS] > 0 or still
+
+
+_FAULTS = (None, SensorFault.OUT_OF_RANGE, SensorFault.STUCK, SensorFault.SEES_NOTHING, SensorFault.SEES_A_PHANTOM)
+"""Signs by the number of `fault_code`."""
+
+
+def fault_code(signs: MutableSequence[int], driven: int, limits: SensorLimits) -> int:
+    """Return the number of the sign that a sensor is broken, 0 without one. `driven`: ticks of driving."""
+    if signs[OUT_TICKS] >= RANGE_TICKS:
+        return 1
+    if driven - signs[STILL_FROM] >= limits.stuck_ticks:
+        return 2
+    before, after = signs[_BEFORE + 1] - signs[_BEFORE], signs[_AFTER + 1] - signs[_AFTER]
+    both_change = (
+        before > QUIET_COUNTS + QUIET_RATIO * signs[_BEFORE + 1]
+        and after > QUIET_COUNTS + QUIET_RATIO * signs[_AFTER + 1]
+    )
+    if signs[_AGREED_TICKS] >= DARK_TICKS or (both_change and signs[_LOW_TICKS] >= DARK_TICKS):
+        return 3
+    if signs[_PASSES] or (min(before, after) >= SWING_COUNTS and signs[_HIGH_TICKS] >= PHANTOM_TICKS):
+        return 4
+    return 0
 
 
 class SensorSigns:
@@ -135,161 +265,64 @@ class SensorSigns:
     each sensor.
     """
 
-    __slots__ = (
-        "_across_m",
-        "_after",
-        "_after_high",
-        "_after_low",
-        "_beam",
-        "_before",
-        "_before_high",
-        "_before_low",
-        "_driven",
-        "_has_witnesses",
-        "_high",
-        "_highest",
-        "_looks_alike",
-        "_low",
-        "_lowest",
-        "_quiet_high",
-        "_quiet_low",
-        "_second_after",
-        "_second_before",
-        "_stuck_ticks",
-        "_toward_m",
-        "agreed_ticks",
-        "changed",
-        "high_ticks",
-        "low_ticks",
-        "out_ticks",
-        "passes",
-        "place",
-        "still_from",
-        "suspect",
-    )
+    __slots__ = ("_beam", "_has_witnesses", "_limits", "_looks_alike", "_near", "_signs", "_way_m", "place", "suspect")
 
-    def __init__(self, near: Neighbours, beam: Beam, limits: SensorLimits) -> None:
-        self.place = beam.place
-        self._beam = beam
-        self._before, self._after = near.before, near.after
-        self._second_before, self._second_after = near.second_before, near.second_after
-        self._lowest, self._highest, self._stuck_ticks = limits
+    def __init__(self, place: int, near: Neighbours, beam: Beam, limits: SensorLimits) -> None:
+        """`place`: in the sensor table."""
+        self.place = place
+        self._near = near.before, near.after, near.second_before, near.second_after
+        self._beam, self._limits = beam, limits
         self._has_witnesses = self._looks_alike = near.has_witnesses
         self.restart(0)
+
+    @property
+    def still_from(self) -> int:
+        """Ticks that the robot had driven when the reading last left its narrow band."""
+        return self._signs[STILL_FROM]
+
+    @property
+    def out_of_range(self) -> bool:
+        """Return whether no working sensor gives the newest reading."""
+        return self._signs[OUT_TICKS] > 0
+
+    @property
+    def changed(self) -> bool:
+        """Return whether the reading has left the band of noise since `note_broken` or `restart`."""
+        return self._signs[_CHANGED] > 0
+
+    def note_broken(self) -> None:
+        """Wait for a change from now on: the sensor was noticed as broken."""
+        self._signs[_CHANGED] = 0
 
     def set_witnesses(self, broken: Container[int]) -> None:
         """Compare with the neighbours from now on only if neither is among the `broken` sensors.
 
         `broken`: places in the sensor table.
         """
-        self._has_witnesses = self._looks_alike and self._before not in broken and self._after not in broken
-        self.low_ticks = self.high_ticks = self.agreed_ticks = 0
-        self._across_m = self._toward_m = 0.0
-        self.passes = False
+        self._has_witnesses = self._looks_alike and not any(each in broken for each in self._near[:2])
+        forget_contradictions(self._signs, self._way_m)
 
     def restart(self, driven: int) -> None:
         """Forget all signs; `driven`: ticks that the robot has driven."""
-        self._low = self._high = self._quiet_low = self._quiet_high = -1000
-        self._before_low = self._before_high = self._after_low = self._after_high = 0
-        self._driven = self.still_from = driven
-        self.low_ticks = self.high_ticks = self.agreed_ticks = self.out_ticks = 0
-        self._across_m = self._toward_m = 0.0
-        self.passes = False
-        """Whether the wheels have moved the robot past what it sees."""
-        self.changed = False
-        """Whether the reading has left the band of noise since this was set to False."""
+        self._signs, self._way_m = list(NO_SIGNS), [0.0, 0.0]
+        self._signs[_DRIVEN] = self._signs[STILL_FROM] = driven
         self.suspect = False
         """Whether `fault` may find a sign; it spares a call in most ticks."""
 
     def update(self, counts: tuple[int, ...], driven: int, motion: WheelMotion) -> None:
         """Look at all readings, in counts; `driven`: ticks that the robot has driven; `motion`: since the last look."""
-        value = counts[self.place]
-        drove, self._driven = driven - self._driven, driven
-        self.out_ticks = 0 if self._lowest <= value <= self._highest else min(self.out_ticks + LOOK_TICKS, RANGE_TICKS)
-        if value < self._low:
-            self._low = value
-        elif value > self._high:
-            self._high = value
-        if self._high - self._low > STUCK_BAND:
-            self._low = self._high = value
-            self.still_from = driven
-        if value < self._quiet_low:
-            self._quiet_low = value
-        elif value > self._quiet_high:
-            self._quiet_high = value
-        if self._quiet_high - self._quiet_low > QUIET_COUNTS + QUIET_RATIO * self._quiet_high:
-            self._begin_quiet(value, counts)
-        elif drove and self._has_witnesses:
-            self._compare(counts, drove, motion)
-        self.suspect = bool(
-            self.low_ticks or self.high_ticks or self.out_ticks or driven - self.still_from >= self._stuck_ticks
+        before, after, second_before, second_after = self._near
+        self.suspect = update_signs(
+            self._signs,
+            self._way_m,
+            (counts[self.place], counts[before], counts[after], counts[second_before], counts[second_after]),
+            driven,
+            (motion.forward_m, motion.turn_rad),
+            self._beam,
+            self._limits,
+            self._has_witnesses,
         )
 
     def fault(self, driven: int) -> SensorFault | None:
         """Return the sign that the sensor is broken; None without one. `driven`: ticks that the robot has driven."""
-        if self.out_ticks >= RANGE_TICKS:
-            return SensorFault.OUT_OF_RANGE
-        if driven - self.still_from >= self._stuck_ticks:
-            return SensorFault.STUCK
-        if self.agreed_ticks >= DARK_TICKS or (self.low_ticks >= DARK_TICKS and self._neighbours_change):
-            return SensorFault.SEES_NOTHING
-        swing = min(self._before_high - self._before_low, self._after_high - self._after_low)
-        if self.passes or (swing >= SWING_COUNTS and self.high_ticks >= PHANTOM_TICKS):
-            return SensorFault.SEES_A_PHANTOM
-        return None
-
-    def _begin_quiet(self, value: int, counts: tuple[int, ...]) -> None:
-        """Start the band of noise at this reading: it has changed by more than noise."""
-        self._quiet_low = self._quiet_high = value
-        self._before_low = self._before_high = counts[self._before]
-        self._after_low = self._after_high = counts[self._after]
-        self.low_ticks = self.high_ticks = self.agreed_ticks = 0
-        self._across_m = self._toward_m = 0.0
-        self.passes = False
-        self.changed = True
-
-    @property
-    def _neighbours_change(self) -> bool:
-        """Return whether both neighbours have changed by more than noise while this sensor has not."""
-        before, after = self._before_high - self._before_low, self._after_high - self._after_low
-        return (
-            before > QUIET_COUNTS + QUIET_RATIO * self._before_high
-            and after > QUIET_COUNTS + QUIET_RATIO * self._after_high
-        )
-
-    def _compare(self, counts: tuple[int, ...], drove: int, motion: WheelMotion) -> None:
-        """Compare the band of noise with the neighbours' readings, in counts, after `drove` more ticks of driving."""
-        before, after = counts[self._before], counts[self._after]
-        if self.low_ticks or self.high_ticks:
-            self._widen(before, after)
-        else:  # a neighbour that jumped before the contradiction and is stuck since is no witness
-            self._before_low = self._before_high = before
-            self._after_low = self._after_high = after
-        nearest, high = min(before, after), self._quiet_high
-        if nearest > high:
-            if nearest - high > DARK_DIFFERS_COUNTS and high < self._beam.dark_counts:
-                if min(counts[self._second_before], counts[self._second_after]) - high > AGREES_COUNTS:
-                    self.agreed_ticks += drove
-                self.low_ticks += drove
-        elif self._quiet_low - before > DIFFERS_COUNTS and self._quiet_low - after > DIFFERS_COUNTS:
-            self._follow_obstacle(counts, motion)
-            self.high_ticks += drove
-
-    def _widen(self, before: int, after: int) -> None:
-        if before < self._before_low:
-            self._before_low = before
-        elif before > self._before_high:
-            self._before_high = before
-        if after < self._after_low:
-            self._after_low = after
-        elif after > self._after_high:
-            self._after_high = after
-
-    def _follow_obstacle(self, counts: tuple[int, ...], motion: WheelMotion) -> None:
-        """Add the way past the obstacle, unless a sensor next to a neighbour sees it, too."""
-        if self._quiet_low - max(counts[self._second_before], counts[self._second_after]) <= DIFFERS_COUNTS:
-            return
-        across_m, toward_m = self._beam.motion_m((self._quiet_low + self._quiet_high) / 2, motion)
-        self._across_m = KEEPS * self._across_m + across_m
-        self._toward_m = KEEPS * self._toward_m + toward_m
-        self.passes = self.passes or max(abs(self._across_m), abs(self._toward_m)) > PASSES_M
+        return _FAULTS[fault_code(self._signs, driven, self._limits)]

@@ -10,17 +10,7 @@ from hal.odometry import WheelOdometry
 from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
 from hal.sensor_ring import neighbours_of
-from hal.sensor_signs import (
-    FLICKERS_TICKS,
-    HIGHEST,
-    LOOK_TICKS,
-    LOWEST,
-    STUCK_TIMES,
-    SensorFault,
-    SensorLimits,
-    SensorSigns,
-    beam_of,
-)
+from hal.sensor_signs import FLICKERS_TICKS, LOOK_TICKS, SensorFault, SensorSigns, beam_of, sensor_limits
 
 
 class BrokenSensor(NamedTuple):
@@ -54,11 +44,10 @@ class SensorWatch:
         self._left_ticks = self._right_ticks = 0
         # No wheel turns farther between two looks: another node forged such encoder frames.
         self._farthest_m = 2 * robot.motors.maximum_speed_m_s * LOOK_TICKS * robot.cycle_s
-        stuck_ticks = round(STUCK_TIMES * robot.guard.frozen_infrared_s / robot.cycle_s)
         self._sensors = infrared.sensors
-        lowest, highest = infrared.floor_counts * LOWEST, infrared.plateau_counts * HIGHEST
+        limits = sensor_limits(robot)
         self._states = [
-            SensorSigns(near, beam_of(infrared, place), SensorLimits(lowest, highest, stuck_ticks))
+            SensorSigns(place, near, beam_of(infrared, place), limits)
             for place, near in enumerate(neighbours_of(infrared.sensors))
         ]
         self._ticks = self._driven = 0
@@ -106,13 +95,13 @@ class SensorWatch:
         """Return the suspects as broken, unless the whole board or a robot without noise explains their signs."""
         others = len(self._states) // 2
         flickering = sum(self._driven - state.still_from < FLICKERS_TICKS for state in self._states)
-        in_range = sum(not state.out_ticks for state in self._states)
+        in_range = sum(not state.out_of_range for state in self._states)
         if min(flickering, in_range) <= others or len(self._broken) + len(signs) >= others:
             return ()
         for place, fault in signs:
             sensor = self._sensors[place]
             self._broken[place] = BrokenSensor(place, sensor.name, sensor.label, fault, counts[place])
-            self._states[place].changed = False
+            self._states[place].note_broken()
         self._publish()
         return tuple(self._broken[place] for place, _ in signs)
 

@@ -9,7 +9,8 @@ import hashlib
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, ParamSpec, TypeVar
+from types import FunctionType
+from typing import Any, ParamSpec, TypeVar, cast
 
 try:
     import numba
@@ -53,15 +54,26 @@ def _make_cache() -> bool:
 _CACHES = IS_COMPILED and _make_cache()
 
 
-def compiled(function: Callable[_P, _T]) -> Callable[_P, _T]:
+def compiled(
+    function: Callable[_P, _T], *plain: Callable[..., Any], **compiled_already: Callable[..., Any]
+) -> Callable[_P, _T]:
     """Return a function compiled for the batch; without numba, the function itself.
 
     Raises ValueError for a function of a file whose changes would not be noticed.
+
+    Args:
+        function: function to be compiled.
+        plain: functions that it calls, which are compiled with it.
+        compiled_already: others that it calls, by name.
     """
     if Path(function.__code__.co_filename) not in _SOURCES:
         raise ValueError(f"{function.__module__} is not among the sources of the batch")
     if _numba is None:
         return function
+    called = {each.__name__: compiled(each) for each in plain} | compiled_already
+    if called:
+        own = cast("FunctionType", function)
+        function = FunctionType(own.__code__, {**own.__globals__, **called}, own.__name__)
     return _compile(function)
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from behaviors.policies import circle, eight, fleeing, streets, wall_following
 from hal.guard_limits import GuardLimits
 from hal.infrared_law import InfraredLawNumbers
+from hal.sensor_signs import SensorLimits
 from simbridge.robot.wheels import SideLaw
 
 Floats = NDArray[np.float64]
@@ -58,17 +59,10 @@ class SensorLaw(NamedTuple):
 class WatchLaw(NamedTuple):
     """Numbers of SensorWatch and of the check for a frozen board, for the compiled loop."""
 
-    lowest: float
-    highest: float
-    stuck_ticks: int
+    sensors: SensorLimits
     frozen_s: float
-    dark_counts: float
-    """Lowest reading that may be of a sensor pressed against a wall."""
     beams: Floats
     """Sine, cosine and place along and across the beam of each sensor, (sensors, 4), places in m."""
-    numerator_counts_m: float
-    offset_m: float
-    bias_counts: float
     metres_per_tick: float
     track_m: float
 

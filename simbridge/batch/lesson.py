@@ -8,7 +8,7 @@ from hal.kurt2_settings import Kurt2Settings
 from simbridge.batch.batch import RobotBatch
 from simbridge.batch.drive import begin_tick
 from simbridge.batch.record import STRETCH
-from simbridge.batch.safety import forget_contradictions
+from simbridge.batch.safety import forget_all_contradictions
 from simbridge.batch.tables import build_features, padded_width, require_features
 from simbridge.batch.teach import Learner, Orders, Table, perceive, teach
 from simbridge.contracts.areas import Borders
@@ -136,7 +136,7 @@ class CompiledLesson(RobotBatch):
 
     def trust_sensors(self) -> None:
         """Forget contradictions of sensors with their neighbours, as a resume does."""
-        forget_contradictions(self._robots[0])
+        forget_all_contradictions(self._robots[0])
         self._keep_state()
 
     def sense(self) -> None:

@@ -8,6 +8,7 @@ from typing import Annotated, NamedTuple, get_args, get_origin, get_type_hints
 
 import numpy as np
 
+from hal.sensor_signs import SIGNS
 from simbridge.batch.compiled import compiled
 from simbridge.batch.laws import Floats, Integers, StuckLaw
 from simbridge.contracts.batch import MOST_KEPT, TRACED_TICKS
@@ -20,8 +21,6 @@ STRETCH = 500
 """Most ticks in one call of the loop."""
 NEAR_FACES, NEAR_POSTS = 64, 16
 """Most faces and posts near a robot."""
-SIGNS = 14
-"""Numbers of the state of one sensor in its watch."""
 MOST_RAYS = 3
 MOST_VALUES = 128
 """Most values of a situation, recent and averaged: numpy adds the squares of more values in another order."""

@@ -9,33 +9,28 @@ import math
 
 from hal.guard_limits import LONGEST_SLEW_CYCLES, SLEW_LIMIT, GuardLimits, bounded, slewed
 from hal.sensor_signs import (
-    AGREES_COUNTS,
-    DARK_DIFFERS_COUNTS,
-    DARK_TICKS,
-    DIFFERS_COUNTS,
-    KEEPS,
     LOOK_TICKS,
-    PASSES_M,
-    PHANTOM_TICKS,
-    QUIET_COUNTS,
-    QUIET_RATIO,
-    RANGE_TICKS,
-    STUCK_BAND,
-    SWING_COUNTS,
+    Beam,
+    compare_with_neighbours,
+    fault_code,
+    forget_contradictions,
+    obstacle_motion_m,
+    update_signs,
+    widen,
 )
 from simbridge.batch.compiled import compiled
-from simbridge.batch.laws import Integers, WatchLaw
-from simbridge.batch.record import SIGNS, Robot
+from simbridge.batch.laws import WatchLaw
+from simbridge.batch.record import Robot
 
-_LOW, _HIGH, _QUIET_LOW, _QUIET_HIGH, _BEFORE_LOW, _BEFORE_HIGH, _AFTER_LOW, _AFTER_HIGH = range(8)
-_DRIVEN, STILL_FROM, _LOW_TICKS, _HIGH_TICKS, _OUT_TICKS, _AGREED_TICKS = range(8, SIGNS)
-UNSEEN = -1000
-"""First value of the bands of `hal.sensor_signs`."""
 _ROUNDING = 1e-6
 """Set points are truncated to whole cm/s beyond this (hal.control)."""
 
 _bounded = compiled(bounded)
 _slewed = compiled(slewed)
+_forget = compiled(forget_contradictions)
+_compare = compiled(compare_with_neighbours, widen, obstacle_motion_m)
+_update_signs = compiled(update_signs, widen, forget_contradictions, compare_with_neighbours=_compare)
+_fault_code = compiled(fault_code)
 
 
 @compiled
@@ -67,101 +62,21 @@ def looks_broken(robot: Robot, law: WatchLaw) -> bool:
     robot.watch_left_ticks = robot.watch_right_ticks = 0
     found = False
     for i in range(robot.counts.shape[0]):
-        if _update_signs(robot, i, motion, law):
-            found = found or _shows_fault(robot, i, law)
+        before, after = robot.counts[robot.before[i]], robot.counts[robot.after[i]]
+        second_before, second_after = robot.counts[robot.second_before[i]], robot.counts[robot.second_after[i]]
+        readings = robot.counts[i], before, after, second_before, second_after
+        beam = Beam(law.beams[i, 0], law.beams[i, 1], law.beams[i, 2], law.beams[i, 3])
+        signs = robot.signs[i]
+        if _update_signs(signs, robot.ways_m[i], readings, robot.driven, motion, beam, law.sensors, True):
+            found = found or _fault_code(signs, robot.driven, law.sensors) > 0
     return found
 
 
 @compiled
-def _update_signs(robot: Robot, i: int, motion: tuple[float, float], law: WatchLaw) -> bool:
-    """Update the signs of sensor `i`; return whether it may be broken.
-
-    `motion`: way ahead in m and turn in rad since the last look.
-    """
-    signs = robot.signs[i]
-    value, driven = robot.counts[i], robot.driven
-    drove = driven - signs[_DRIVEN]
-    signs[_DRIVEN] = driven
-    in_range = law.lowest <= value <= law.highest
-    signs[_OUT_TICKS] = 0 if in_range else min(signs[_OUT_TICKS] + LOOK_TICKS, RANGE_TICKS)
-    _widen(signs, _LOW, _HIGH, value)
-    if signs[_HIGH] - signs[_LOW] > STUCK_BAND:
-        signs[_LOW] = signs[_HIGH] = value
-        signs[STILL_FROM] = driven
-    _widen(signs, _QUIET_LOW, _QUIET_HIGH, value)
-    before, after = robot.counts[robot.before[i]], robot.counts[robot.after[i]]
-    if signs[_QUIET_HIGH] - signs[_QUIET_LOW] > QUIET_COUNTS + QUIET_RATIO * signs[_QUIET_HIGH]:
-        signs[_QUIET_LOW] = signs[_QUIET_HIGH] = value
-        signs[_BEFORE_LOW] = signs[_BEFORE_HIGH] = before
-        signs[_AFTER_LOW] = signs[_AFTER_HIGH] = after
-        signs[_LOW_TICKS] = signs[_HIGH_TICKS] = signs[_AGREED_TICKS] = 0
-        robot.ways_m[i] = 0.0
-    elif drove:
-        if signs[_LOW_TICKS] > 0 or signs[_HIGH_TICKS] > 0:
-            _widen(signs, _BEFORE_LOW, _BEFORE_HIGH, before)
-            _widen(signs, _AFTER_LOW, _AFTER_HIGH, after)
-        else:
-            signs[_BEFORE_LOW] = signs[_BEFORE_HIGH] = before
-            signs[_AFTER_LOW] = signs[_AFTER_HIGH] = after
-        high, low = signs[_QUIET_HIGH], signs[_QUIET_LOW]
-        second_before, second_after = robot.counts[robot.second_before[i]], robot.counts[robot.second_after[i]]
-        if before > high and after > high:
-            if high < law.dark_counts and min(before, after) - high > DARK_DIFFERS_COUNTS:
-                signs[_LOW_TICKS] += drove
-                if min(second_before, second_after) - high > AGREES_COUNTS:
-                    signs[_AGREED_TICKS] += drove
-        elif low - before > DIFFERS_COUNTS and low - after > DIFFERS_COUNTS:
-            signs[_HIGH_TICKS] += drove
-            if low - max(second_before, second_after) > DIFFERS_COUNTS:
-                _follow_obstacle(robot, i, motion, law)
-    still = driven - signs[STILL_FROM] >= law.stuck_ticks
-    return bool(signs[_LOW_TICKS] > 0 or signs[_HIGH_TICKS] > 0 or signs[_OUT_TICKS] > 0 or still)
-
-
-@compiled
-def forget_contradictions(robot: Robot) -> None:
-    """Forget the contradictions of all sensors with their neighbours, as a resume does (hal.sensor_signs)."""
+def forget_all_contradictions(robot: Robot) -> None:
+    """Forget the contradictions of all sensors with their neighbours, as a resume does (hal.sensor_watch)."""
     for i in range(robot.counts.shape[0]):
-        robot.signs[i][_LOW_TICKS] = robot.signs[i][_HIGH_TICKS] = robot.signs[i][_AGREED_TICKS] = 0
-        robot.ways_m[i, 0] = robot.ways_m[i, 1] = 0.0
-
-
-@compiled
-def _follow_obstacle(robot: Robot, i: int, motion: tuple[float, float], law: WatchLaw) -> None:
-    """Add the way past the obstacle of sensor `i`, by a motion in m and rad (hal.sensor_signs)."""
-    signs, beam, (forward_m, turn_rad) = robot.signs[i], law.beams[i], motion
-    counts = (signs[_QUIET_LOW] + signs[_QUIET_HIGH]) / 2
-    distance_m = law.numerator_counts_m / (counts + law.bias_counts) - law.offset_m
-    across_m = forward_m * beam[0] - turn_rad * (beam[2] + distance_m)
-    toward_m = turn_rad * beam[3] - forward_m * beam[1]
-    robot.ways_m[i, 0] = KEEPS * robot.ways_m[i, 0] + across_m
-    robot.ways_m[i, 1] = KEEPS * robot.ways_m[i, 1] + toward_m
-
-
-@compiled
-def _widen(signs: Integers, low: int, high: int, value: int) -> None:
-    """Widen a band of `signs` to hold `value`."""
-    if value < signs[low]:
-        signs[low] = value
-    elif value > signs[high]:
-        signs[high] = value
-
-
-@compiled
-def _shows_fault(robot: Robot, i: int, law: WatchLaw) -> bool:
-    signs = robot.signs[i]
-    if signs[_OUT_TICKS] >= RANGE_TICKS or robot.driven - signs[STILL_FROM] >= law.stuck_ticks:
-        return True
-    if max(abs(robot.ways_m[i, 0]), abs(robot.ways_m[i, 1])) > PASSES_M:
-        return True
-    before, after = signs[_BEFORE_HIGH] - signs[_BEFORE_LOW], signs[_AFTER_HIGH] - signs[_AFTER_LOW]
-    change = (
-        before > QUIET_COUNTS + QUIET_RATIO * signs[_BEFORE_HIGH]
-        and after > QUIET_COUNTS + QUIET_RATIO * signs[_AFTER_HIGH]
-    )
-    if signs[_AGREED_TICKS] >= DARK_TICKS or (change and signs[_LOW_TICKS] >= DARK_TICKS):
-        return True
-    return bool(min(before, after) >= SWING_COUNTS and signs[_HIGH_TICKS] >= PHANTOM_TICKS)
+        _forget(robot.signs[i], robot.ways_m[i])
 
 
 @compiled

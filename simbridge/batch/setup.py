@@ -20,12 +20,11 @@ from hal.guard_limits import limits_of
 from hal.kurt2_settings import Kurt2Settings
 from hal.robot import HIGHEST_COUNTS
 from hal.sensor_ring import neighbours_of
-from hal.sensor_signs import HIGHEST, LOWEST, STUCK_TIMES, beam_of
+from hal.sensor_signs import NO_SIGNS, beam_of, sensor_limits
 from simbridge.batch.borders import OUTSIDE
 from simbridge.batch.contacts import keep_box
 from simbridge.batch.laws import BodyLaw, Floats, Laws, MindLaw, SensorLaw, StuckLaw, WatchLaw, World
 from simbridge.batch.record import Robots, Sizes, empty_robots
-from simbridge.batch.safety import UNSEEN
 from simbridge.batch.tables import kind_of
 from simbridge.contracts.batch import STANDS, Action, DriveSettings, FixedSpeeds, Mind, PolicyMind, Turn, WallDistance
 from simbridge.robot.body import Body
@@ -99,15 +98,9 @@ def build_watch_law(robot: Kurt2Settings) -> WatchLaw:
     """Return the limits of the watches of sensors."""
     beams = [beam_of(robot.infrared, place) for place in range(len(robot.infrared.sensors))]
     return WatchLaw(
-        lowest=robot.infrared.floor_counts * LOWEST,
-        highest=robot.infrared.plateau_counts * HIGHEST,
-        stuck_ticks=round(STUCK_TIMES * robot.guard.frozen_infrared_s / robot.cycle_s),
+        sensors=sensor_limits(robot),
         frozen_s=robot.guard.frozen_infrared_s,
-        dark_counts=beams[0].dark_counts,
-        beams=np.array([(each.sine, each.cosine, each.along_m, each.aside_m) for each in beams]),
-        numerator_counts_m=robot.infrared.numerator_counts_m,
-        offset_m=robot.infrared.offset_m,
-        bias_counts=robot.infrared.bias_counts,
+        beams=np.array(beams),
         metres_per_tick=robot.geometry.metres_per_tick,
         track_m=robot.geometry.effective_track_m,
     )
@@ -176,7 +169,7 @@ def build_robots(
     robots["before"], robots["after"] = [each.before for each in near], [each.after for each in near]
     robots["second_before"] = [each.second_before for each in near]
     robots["second_after"] = [each.second_after for each in near]
-    robots["signs"][:, :, :4] = UNSEEN
+    robots["signs"] = NO_SIGNS
     robots["looked_at_s"], robots["driven_at_s"] = math.inf, -math.inf
     robots["gathered_x_m"] = robots["gathered_y_m"] = math.inf
     robots["command"] = robots["action"] = robots["rla"] = STANDS

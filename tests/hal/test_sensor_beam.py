@@ -5,10 +5,11 @@ import math
 import pytest
 
 from hal.kurt2_settings import load_kurt2
-from hal.odometry import PlanePose, WheelMotion
-from hal.sensor_signs import beam_of
+from hal.odometry import PlanePose
+from hal.sensor_signs import beam_of, obstacle_motion_m, sensor_limits
 
-INFRARED = load_kurt2().infrared
+ROBOT = load_kurt2()
+INFRARED = ROBOT.infrared
 
 
 @pytest.mark.parametrize("place", range(len(INFRARED.sensors)), ids=INFRARED.names)
@@ -25,11 +26,11 @@ def test_beam_motion_is_that_of_a_standing_obstacle(place: int, forward_m: float
     dx_m, dy_m = ahead_m * cos + left_m * sin - x_m, left_m * cos - ahead_m * sin - y_m
     across_m = dy_m * math.cos(heading_rad) - dx_m * math.sin(heading_rad)
     along_m = dx_m * math.cos(heading_rad) + dy_m * math.sin(heading_rad)
-    found = beam_of(INFRARED, place).motion_m(counts, WheelMotion(0.0, 0.0, forward_m, turn_rad))
+    found = obstacle_motion_m(counts, (forward_m, turn_rad), beam_of(INFRARED, place), sensor_limits(ROBOT))
     assert found == pytest.approx((across_m, along_m), abs=1e-9)
 
 
 def test_beam_dark_counts_are_below_those_of_a_pressed_sensor() -> None:
-    dark = beam_of(INFRARED, 0).dark_counts
+    dark = sensor_limits(ROBOT).dark_counts
     pressed = [INFRARED.counts_at(distance_m / 1000) for distance_m in range(101)]
     assert INFRARED.floor_counts * 1.2 < dark < min(pressed)
