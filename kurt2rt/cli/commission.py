@@ -39,6 +39,7 @@ from kurt2rt.checks.commission.test_stand import TestStand
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import RobotName, refuse_if
 from kurt2rt.platform.durable_files import write_durably
+from kurt2rt.platform.text_table import print_lines
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.service.shutdown import SHUTDOWN_SIGNALS
 
@@ -105,13 +106,13 @@ def commission(options: _Options) -> None:
     console = Console()
     target = _target(options.name)
     session = _session(options)
-    _tell(console, f"{options.name} on {options.bus}; progress is kept in {session.path}; Ctrl-C brakes")
+    print_lines(console, f"{options.name} on {options.bus}; progress is kept in {session.path}; Ctrl-C brakes")
     _tell_earlier(console, session.progress, session.chosen)
     taken = anyio.run(_run_checklist, session, console)
     print_report(taken, STEPS, console)
     report = session.path.with_suffix(".txt")
     write_durably(report, as_text(taken, STEPS))
-    _tell(console, f"all that was measured: {report}")
+    print_lines(console, f"all that was measured: {report}")
     _conclude(console, taken, session.base, target)
     records = [taken.steps[step.name] for step in session.chosen if step.name in taken.steps]
     if any(record.outcome is StepOutcome.FAILED for record in records):
@@ -142,7 +143,7 @@ def _tell_earlier(console: Console, progress: Progress, chosen: Sequence[Commiss
         record = progress.steps.get(step.name)
         if step not in chosen and record is not None and step.name != "lifted":
             text = f"  {step.name}: {record.outcome} on {record.at}, {record.who}; again with --only {step.name}"
-            _tell(console, text)
+            print_lines(console, text)
 
 
 class _Session(NamedTuple):
@@ -176,11 +177,11 @@ async def _run_checklist(session: _Session, console: Console) -> Progress:
                 try:
                     await checklist.run(session.chosen, session.skipped)
                 except AbortedError:
-                    _tell(console, "left; the same command goes on from here")
+                    print_lines(console, "left; the same command goes on from here")
                 stopped = False  # not by a signal
             tasks.cancel_scope.cancel()
         if stopped:
-            _tell(console, "stopped: the wheels are braked; the same command goes on from here")
+            print_lines(console, "stopped: the wheels are braked; the same command goes on from here")
         return checklist.progress
 
 
@@ -197,20 +198,24 @@ def _conclude(console: Console, progress: Progress, base: Kurt2Settings, target:
     missing = open_steps(progress)
     if blocking:
         failed = ", ".join(step.name for step in blocking)
-        _tell(console, f"no settings file is written while these fail: {failed}; mend, then run the same command again")
+        print_lines(
+            console, f"no settings file is written while these fail: {failed}; mend, then run the same command again"
+        )
         return
     if missing:
         waiting = ", ".join(step.name for step in missing)
-        _tell(console, f"no settings file yet; steps not taken: {waiting}; go on with the same command, or --skip them")
+        print_lines(
+            console, f"no settings file yet; steps not taken: {waiting}; go on with the same command, or --skip them"
+        )
         return
     try:
         write_robot_file(target, base, progress, STEPS)
     except SettingsError as error:
-        _tell(console, f"no settings file yet: {error}")
+        print_lines(console, f"no settings file yet: {error}")
         return
-    _tell(console, f"written: {target}")
-    _tell(console, f"use it: robot: {target} in a copy of config/runtime/default.yaml, then")
-    _tell(console, f"        kurt2rt run --bus {progress.bus} --settings THAT.yaml", to_copy=True)
+    use = f"use it: robot: {target} in a copy of config/runtime/default.yaml, then"
+    print_lines(console, f"written: {target}", use)
+    print_lines(console, f"        kurt2rt run --bus {progress.bus} --settings THAT.yaml", whole=True)
 
 
 def _progress(path: Path, fresh: Progress) -> Progress:
@@ -250,8 +255,3 @@ def _user() -> str:
         return " ".join(getpass.getuser().split())
     except (KeyError, OSError):  # a user without a name, as in a container
         return "unknown"
-
-
-def _tell(console: Console, text: str, *, to_copy: bool = False) -> None:
-    """Print a line; a line to copy is not wrapped."""
-    console.print(text, markup=False, highlight=False, soft_wrap=to_copy or not console.is_terminal)

@@ -29,10 +29,6 @@ class LiveScreen:
         self._doing, self._numbers = "", ""
         self._troubles: tuple[str, ...] = ()
 
-    def print(self, text: str, style: str | None = None) -> None:
-        """Print a line of text above the lines in place; `style` is one of rich, None: plain."""
-        self._console.print(text, style=style, markup=False, highlight=False)
-
     def pin(self, pages: ServedPages) -> None:
         """Show the pages' addresses, and the newest paired device's as a code if the window is high enough."""
         self._pages = pages

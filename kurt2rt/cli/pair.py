@@ -67,7 +67,7 @@ def pair(
         kurt2rt pair anna-phone --revoke
     """
     service = load_service(settings)
-    pairings = PairingFolders(Path(service.teachers), Path(service.devices))
+    pairings = service.pairings
     refuse_if(list_ + renew + revoke > 1, "one of these at a time", "--list, --renew, --revoke")
     refuse_if(as_json and not list_, "only a list is printed as JSON; give --list, too", "--json")
     if list_:

@@ -29,19 +29,20 @@ def _progress(*, transient: bool) -> Progress:
         TimeElapsedColumn(table_column=Column(min_width=7, no_wrap=True)),
         TimeRemainingColumn(table_column=Column(min_width=7, no_wrap=True)),
     )
-    return Progress(*columns, console=Console(stderr=True), transient=transient)
+    console = Console(stderr=True)
+    return Progress(*columns, console=console, transient=transient, disable=transient and not console.is_terminal)
 
 
 @contextmanager
-def job_bars() -> Iterator[Report]:
-    """Yield a callback that shows a bar for each job."""
-    with _progress(transient=False) as progress:
+def job_bars(*, transient: bool = False) -> Iterator[Report]:
+    """Yield a callback that shows a bar for each job; `transient`: all go when they are done."""
+    with _progress(transient=transient) as progress:
         bars: dict[str, TaskID] = {}
 
         def report(what: str, done_s: float, whole_s: float) -> None:
             if what not in bars:
                 bars[what] = progress.add_task(what, total=whole_s)
-            progress.update(bars[what], completed=done_s)
+            progress.update(bars[what], completed=done_s, total=whole_s)
 
         yield report
 

@@ -1,9 +1,7 @@
 """`kurt2rt recording ...`: recorded runs, listed, repaired, and written for other programs."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -16,16 +14,9 @@ from kurt2rt.runs.recording.recording import LAYOUT
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import find_run, runs_in, segments_in
 from kurt2rt.runs.replay.reader import read_run
-from kurt2rt.runs.replay.run import Run
 from kurt2rt.service.settings import load_service
 
-if TYPE_CHECKING:
-    from kurt2rt.runs.export.lerobot import OnEntry
-    from kurt2rt.runs.recording.entries import TickEntry
-
 recording = typer.Typer(help="List recorded runs, repair or export them.", no_args_is_help=True)
-
-_REPORT_EVERY_TICKS = 500
 
 
 @recording.command("list")
@@ -131,8 +122,8 @@ def export(
     folder = runs or Path(load_service(settings).recordings)
     named = [find_run(each, folder) for each in run] if run else [find_run(None, folder)]
     found = [read_run(each, partial=True) for each in dict.fromkeys(named)]
-    with _bars() as on_entry:
-        exported = export_lerobot(found, out, fps, on_entry)
+    with job_bars() as report:
+        exported = export_lerobot(found, out, fps, report)
     if as_json:
         print_json({"folder": out, "fps": fps, "runs": exported})
         return
@@ -140,18 +131,3 @@ def export(
         episodes = "1 episode" if each.episodes == 1 else f"{each.episodes} episodes"
         say(f"{each.run}: {episodes}, {each.frames} frames" + (f"; {each.trouble}" if each.trouble else ""))
     say(f"data set  {out}")
-
-
-@contextmanager
-def _bars() -> Iterator["OnEntry"]:
-    whole_s: dict[str, float] = {}
-    with job_bars() as report:
-
-        def on_entry(run: Run, entry: "TickEntry") -> None:
-            if entry.number % _REPORT_EVERY_TICKS == 0:
-                done_s = run.elapsed_s(entry)
-                if run.name not in whole_s:
-                    whole_s[run.name] = run.duration_s
-                report(Path(run.name).name, done_s, max(whole_s[run.name], done_s))
-
-        yield on_entry

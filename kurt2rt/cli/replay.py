@@ -1,7 +1,6 @@
 """`kurt2rt replay`."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -18,16 +17,12 @@ from kurt2rt.runs.recording.run_folder import find_run
 from kurt2rt.runs.replay.counterfactual import counterfactual
 from kurt2rt.runs.replay.counterfactual_policy import load_policy
 from kurt2rt.runs.replay.reader import read_run
-from kurt2rt.runs.replay.replay import ReplayedTick
-from kurt2rt.runs.replay.run import Run
+from kurt2rt.runs.replay.run import Run, progress_reporter
 from kurt2rt.runs.replay.trial import format_answer
 from kurt2rt.runs.replay.verify import ReplayVerdict, verify
 from kurt2rt.service.settings import load_service
 
-_TELL_EVERY_TICKS = 100
 _DIFFERENCES = 10
-
-OnTick = Callable[[ReplayedTick], None]
 
 
 def replay(
@@ -63,8 +58,8 @@ def replay(
 
 
 def _verify(run: Run, *, as_json: bool) -> None:
-    with _bar(run) as on_tick:
-        verdict = verify(run, on_tick)
+    with job_bars() as report:
+        verdict = verify(run, progress_reporter(run, report))
     if as_json:
         told = {"run": run.name, "task": run.head.task, "recorded_by": run.head.kurt2rt, "same": verdict.same}
         differences = [
@@ -102,8 +97,8 @@ def _verdict_in_words(run: Run, verdict: ReplayVerdict) -> Iterator[str]:
 
 def _compare(run: Run, knowledge: Path, *, as_json: bool) -> None:
     policy = load_policy(run, knowledge)
-    with _bar(run) as on_tick:
-        found = counterfactual(run, policy, on_tick=on_tick)
+    with job_bars() as report:
+        found = counterfactual(run, policy, on_entry=progress_reporter(run, report))
     if as_json:
         stretches = [
             {**each._asdict(), "was": format_answer(each.was), "would_be": format_answer(each.would_be)}
@@ -122,15 +117,3 @@ def _compare(run: Run, knowledge: Path, *, as_json: bool) -> None:
 def _title(run: Run) -> str:
     head = run.head
     return f"{run.name}: task {head.task}, robot {head.robot} on {head.bus}, recorded by kurt2rt {head.kurt2rt}"
-
-
-@contextmanager
-def _bar(run: Run) -> Iterator[OnTick]:
-    whole_s = run.duration_s
-    with job_bars() as report:
-
-        def on_tick(tick: ReplayedTick) -> None:
-            if tick.entry.number % _TELL_EVERY_TICKS == 0:
-                report("replay", run.elapsed_s(tick.entry), max(whole_s, run.elapsed_s(tick.entry)))
-
-        yield on_tick

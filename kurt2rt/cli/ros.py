@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import anyio
@@ -80,7 +79,7 @@ def ros(options: _Options) -> None:
     import kurt2rt.ros.session  # noqa: F401  # names the extra `ros` before anything else is wrong
 
     service = load_service(options.settings)
-    device = read_device(Path(service.devices) / options.device)
+    device = read_device(service.pairings.devices / options.device)
     names = RosSettings(naming=options.naming, domain=options.domain, namespace=options.namespace)
     anyio.run(_run, options, device, names)
 

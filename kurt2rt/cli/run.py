@@ -290,7 +290,7 @@ def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     run_options = _run_options(options, live_view, recorded=recorded)
     screen = TerminalScreen(
         Console(),
-        Path(settings.devices),
+        settings.pairings.devices,
         as_service=options.service,
         phones=options.phone,
         browser=not options.no_open,

@@ -2,9 +2,8 @@
 
 import sys
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import Annotated
 
 import anyio
@@ -13,7 +12,7 @@ import typer
 from rich.console import Console
 
 from hal.robot_settings import load_robot, robot_that_task_names
-from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, TERMINAL, Device, local_pairing, read_device
+from kurt2rt.channel.security.pairing import LOCAL, TERMINAL, Device, open_device
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import (
     DEFAULT_TEACHER,
@@ -96,15 +95,6 @@ class _Options:
             )
 
 
-@dataclass(frozen=True, slots=True)
-class _Route:
-    """Address of the robot, and the device that teaches it."""
-
-    device: Device
-    host: str
-    port: int
-
-
 @takes_options(_Options)
 def teach(options: _Options) -> None:
     """Teach a running robot: by browser, terminal or script.
@@ -135,19 +125,20 @@ def teach(options: _Options) -> None:
     if options.phone:
         _serve(options, service, None)
         return
-    device = _device(service, options.device or (TERMINAL if options.terminal else AUTO if options.auto else LOCAL))
-    route = _Route(device, options.robot or device.host, options.port or device.port)
+    name = options.device or (TERMINAL if options.terminal else AUTO if options.auto else LOCAL)
+    noted = open_device(service.pairings, name, service.port)
+    device = replace(noted, host=options.robot or noted.host, port=options.port or noted.port)
     if options.terminal:
-        place = f"{route.host}:{route.port}"
-        _teach(route, lambda robot, say: TerminalTeacher(robot, sys.stdin, say, place).teach())
+        place = f"{device.host}:{device.port}"
+        _teach(device, lambda robot, say: TerminalTeacher(robot, sys.stdin, say, place).teach())
     elif options.auto:
-        _teach(route, partial(_by_script, route, service, options))
+        _teach(device, partial(_by_script, device, service, options))
     else:
-        _serve(options, service, route)
+        _serve(options, service, device)
 
 
-def _serve(options: _Options, service: ServiceSettings, route: _Route | None) -> None:
-    """Serve the page of one device, or without a route those of all."""
+def _serve(options: _Options, service: ServiceSettings, device: Device | None) -> None:
+    """Serve the page of one device, or without a device those of all."""
     # Imported here: the packages of the page are an extra, which the robot's own machine may lack.
     from kurt2rt.cli.teach_page import SPARE_PORTS, PageOptions, serve_page, serve_pages
 
@@ -158,32 +149,26 @@ def _serve(options: _Options, service: ServiceSettings, route: _Route | None) ->
         address=options.page_address or service.page_address,
         as_json=options.for_run,
     )
-    if route is None:
+    if device is None:
         serve_pages(service, options.port or service.port, page)
     else:
-        serve_page(route.device, route.host, route.port, page, options.public_address)
-
-
-def _device(service: ServiceSettings, name: str) -> Device:
-    if name in OF_THIS_MACHINE:
-        return local_pairing(Path(service.teachers), Path(service.devices), name, port=service.port).device
-    return read_device(Path(service.devices) / name)
+        serve_page(device, page, options.public_address)
 
 
 _Print = Callable[[str], None]
 
 
-def _teach(route: _Route, teacher: Callable[[TeacherClient, _Print], Awaitable[None]]) -> None:
+def _teach(device: Device, teacher: Callable[[TeacherClient, _Print], Awaitable[None]]) -> None:
     print_line = partial(print_lines, Console())
 
     async def run() -> None:
         async with (
-            TeacherClient(route.device.folder, route.host, route.port) as client,
+            TeacherClient(device.folder, device.host, device.port) as client,
             anyio.create_task_group() as tasks,
         ):
 
             async def until_ended() -> None:
-                reason = await until_teaching_ends(route.device)
+                reason = await until_teaching_ends(device)
                 if reason:
                     print_line(reason)
                 with anyio.move_on_after(1.0, shield=True):
@@ -198,14 +183,14 @@ def _teach(route: _Route, teacher: Callable[[TeacherClient, _Print], Awaitable[N
 
 
 async def _by_script(
-    route: _Route, service: ServiceSettings, options: _Options, client: TeacherClient, print_line: _Print
+    device: Device, service: ServiceSettings, options: _Options, client: TeacherClient, print_line: _Print
 ) -> None:
     try:
         await client.hello()
         # kurt2rt run has asked already whether a person's file may be used.
         lessons = () if options.for_run else await client.lessons(_NEWEST_LESSONS)
     except NoAnswerError as error:
-        raise no_robot(route.host, route.port, route.device.name) from error
+        raise no_robot(device.host, device.port, device.name) from error
     people = dict.fromkeys(each.teacher for each in reversed(lessons) if each.teacher not in PROGRAMS)
     instead = "run the robot on another file, or let kurt2rt run --auto do so"
     if not await anyio.to_thread.run_sync(people_agree, "the robot's knowledge", tuple(people), instead):

@@ -4,12 +4,11 @@ import math
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 
 import anyio
 from rich.console import Console
 
-from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, Device, PairingFolders, local_pairing
+from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, Device, local_pairing
 from kurt2rt.cli.live_screen import PAIR_A_PHONE
 from kurt2rt.cli.qr_code import print_code
 from kurt2rt.cli.teach_shutdown import until_ended, until_teaching_ends
@@ -48,13 +47,11 @@ class PageOptions:
         return own_names() | ({self.address.lower()} - {AUTO})
 
 
-def serve_page(device: Device, host: str, port: int, options: PageOptions, public_address: str | None = None) -> None:
+def serve_page(device: Device, options: PageOptions, public_address: str | None = None) -> None:
     """Serve the page of a device until a signal or the end of the input ends it.
 
     Args:
-        device: paired device.
-        host: address of the robot.
-        port: UDP port of the robot.
+        device: paired device, with the address of the robot.
         options: of the page.
         public_address: address of a TLS proxy in front of the page, such as https://robot.example.
 
@@ -63,8 +60,8 @@ def serve_page(device: Device, host: str, port: int, options: PageOptions, publi
         CredentialsError: the pairing cannot be opened.
     """
     site = PageSite(
-        lambda device: TeacherClient(device.folder, host, port),
-        f"{host}:{port}",
+        lambda device: TeacherClient(device.folder, device.host, device.port),
+        f"{device.host}:{device.port}",
         options.names,
         options.address,
         None if public_address is None else parse_public_address(public_address),
@@ -91,8 +88,7 @@ def serve_pages(service: ServiceSettings, port: int, options: PageOptions) -> No
         PageError: no TCP port is free.
         CredentialsError: the folder of pairings cannot be read or written.
     """
-    pairings = PairingFolders(Path(service.teachers), Path(service.devices))
-    local_pairing(pairings.teachers, pairings.devices, port=service.port)
+    local_pairing(*service.pairings, port=service.port)
     site = PageSite(
         lambda device: TeacherClient(device.folder, ROBOT_HERE, port),
         f"{ROBOT_HERE}:{port}",
@@ -100,7 +96,7 @@ def serve_pages(service: ServiceSettings, port: int, options: PageOptions) -> No
         options.address,
     )
 
-    _serve(partial(local_devices, pairings), site, options, until_ended, at_once=False)
+    _serve(partial(local_devices, service.pairings), site, options, until_ended, at_once=False)
 
 
 def _serve(

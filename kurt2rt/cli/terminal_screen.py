@@ -58,7 +58,7 @@ class TerminalScreen:
         self._browser = browser
         live = console.is_terminal and not console.is_dumb_terminal and not as_service
         self._live = LiveScreen(console, for_phones=phones) if live else None
-        self._to_journal = "JOURNAL_STREAM" in os.environ
+        self._to_journal = not live and "JOURNAL_STREAM" in os.environ
         self._pages = NO_PAGES
         self._alarm = ""
 
@@ -69,9 +69,6 @@ class TerminalScreen:
 
     def print_line(self, text: str, style: str | None = None) -> None:
         """Print a line. `style`: red for an error, yellow for a warning, another colour of rich, or None."""
-        if self._live is not None:
-            self._live.print(text, style)
-            return
         level = _LEVELS.get(style or "", "") if self._to_journal else ""
         print_lines(self._console, f"{level}{text}", style=style)
 

@@ -1,44 +1,42 @@
 """`kurt2rt why`."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from config.robot_plugins import plugin_task, robot_of_task
 from config.settings import SettingsError
 from hal.robot_settings import RobotSettings, load_robot
-from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, ONLOOKER, local_pairing, read_device
+from kurt2rt.channel.security.pairing import ONLOOKER, open_device
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import RecordedRun, RobotAddress, RobotPort, RunsFolder, SettingsName, refuse_if, seconds_of
+from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of, say
 from kurt2rt.cli.why_live import ask_why
 from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.platform.text_table import print_whole
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
 from kurt2rt.runs.explain.facts import DecisionFacts
-from kurt2rt.runs.explain.recorded import ExplainedMoment, explain_run
+from kurt2rt.runs.explain.recorded import explain_run
 from kurt2rt.runs.explain.terminal import render_timeline, render_why
 from kurt2rt.runs.explain.timeline import Timeline, build_timeline, telling_moment
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.run_folder import find_run
 from kurt2rt.runs.replay.reader import read_run
-from kurt2rt.runs.replay.run import Run
+from kurt2rt.runs.replay.run import Run, progress_reporter
 from kurt2rt.service.settings import ServiceSettings, load_service
 
 _FORMATS = (".png", ".svg", ".pdf")
 """Suffixes of kurt2rt.platform.save_figure, which cannot be imported here: matplotlib is an extra."""
-_REPORT_EVERY = 1000
 _MOST_PARTS = 40
 """Parts of a run that are listed; if it has more, those in which it did not drive by itself."""
 _TIME = "SECONDS|M:SS"
-_DONE = TextColumn("{task.completed:.0f} s of the run")
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,9 +138,8 @@ def why(options: _Options) -> None:
 def _read_timeline(run: Run, options: _Options) -> Timeline:
     to_s = math.inf if options.to_s is None else options.to_s
     known = (lesson.event for lesson in run.lessons)
-    with Progress(TextColumn("reading"), _DONE, console=Console(stderr=True), transient=True) as progress:
-        bar = progress.add_task("", total=None)
-        entries = _counted(run.partial_entries(), lambda read_s: progress.update(bar, completed=read_s))
+    with job_bars(transient=True) as report:
+        entries = _counted(run.partial_entries(), progress_reporter(run, report))
         return build_timeline(entries, run.robot, from_s=options.from_s or 0.0, to_s=to_s, known=known)
 
 
@@ -161,18 +158,15 @@ def _show_timeline(console: Console, run: Run, timeline: Timeline, options: _Opt
         _say_where(options)
 
 
-def _counted(entries: Iterable[TickEntry], report: Callable[[float], None]) -> Iterator[TickEntry]:
-    """Yield the entries and report the seconds of the run that were read."""
-    began_s = None
+def _counted(entries: Iterator[TickEntry], on_entry: Callable[[TickEntry], None]) -> Iterator[TickEntry]:
     for entry in entries:
-        began_s = entry.now_s if began_s is None else began_s
-        if entry.tick % _REPORT_EVERY == 0:
-            report(entry.now_s - began_s)
+        on_entry(entry)
         yield entry
 
 
 def _show_decision(console: Console, run: Run, at_s: float, options: _Options) -> None:
-    explained = _explain(run, at_s)
+    with job_bars(transient=True) as report:
+        explained = explain_run(run, at_s, lambda done_s: report("replaying", done_s, at_s))
     if explained.at_s < at_s - 1.0:
         raise typer.BadParameter(
             f"the run ends at {explained.at_s:.2f} s; give a moment before that", param_hint="--at"
@@ -199,18 +193,14 @@ def _show_decision(console: Console, run: Run, at_s: float, options: _Options) -
 
 
 def _show_live(service: ServiceSettings, options: _Options) -> None:
-    name = options.device or ONLOOKER
-    folders = Path(service.teachers), Path(service.devices)
-    if name in OF_THIS_MACHINE:
-        device = local_pairing(*folders, name, port=service.port).device
-    else:
-        device = read_device(folders[1] / name)
+    noted = open_device(service.pairings, options.device or ONLOOKER, service.port)
+    device = replace(noted, host=options.robot or noted.host, port=options.port or noted.port)
 
     def robot_of(task: str) -> RobotSettings:
         noted, other = load_robot(service.robot), robot_of_task(plugin_task(task) or "")
         return noted if other in (None, noted.kind) else load_robot(other)
 
-    facts, found, robot = ask_why(device, options.robot or device.host, options.port or device.port, robot_of)
+    facts, found, robot = ask_why(device, robot_of)
     where = f"now: {facts.task} on {facts.robot}, tick {facts.tick}"
     if options.as_json:
         print_json({"facts": facts, "tips": found, "picture": options.picture})
@@ -239,13 +229,6 @@ def _draw(
 
     draw_why(facts, found, robot, where, options.picture)
     _say_where(options)
-
-
-def _explain(run: Run, at_s: float) -> ExplainedMoment:
-    columns = (TextColumn("replaying"), BarColumn(), TextColumn("{task.completed:.0f} of {task.total:.0f} s"))
-    with Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True), transient=True) as progress:
-        bar = progress.add_task("", total=at_s)
-        return explain_run(run, at_s, lambda done_s: progress.update(bar, completed=done_s))
 
 
 def _of(run: Run) -> str:

@@ -28,19 +28,12 @@ class LiveQuestion(NamedTuple):
 
 
 def ask_why(
-    device: Device,
-    host: str,
-    port: int,
-    robot_of: Callable[[str], RobotSettings],
-    *,
-    patience_s: float = ANSWER_WITHIN_S,
+    device: Device, robot_of: Callable[[str], RobotSettings], *, patience_s: float = ANSWER_WITHIN_S
 ) -> LiveQuestion:
     """Ask a robot, as a client that does not teach, for the facts behind its newest decision.
 
     Args:
-        device: paired device of this machine.
-        host: address of the robot.
-        port: UDP port of the robot.
+        device: paired device of this machine, with the address of the robot.
         robot_of: returns the settings of the robot that a task of this name is taught to.
         patience_s: time to wait for the answer, in s.
 
@@ -50,7 +43,7 @@ def ask_why(
     """
 
     async def ask() -> DecisionFacts:
-        async with ObserverClient(device.folder, host, port, patience_s=patience_s) as client:
+        async with ObserverClient(device.folder, device.host, device.port, patience_s=patience_s) as client:
             client.watching = False  # a question alone does not report the teacher as present
             while (facts := await client.why()) is None:  # noqa: ASYNC110 - no event announces the first tick
                 await anyio.sleep(_FIRST_TICK_S)
@@ -59,7 +52,7 @@ def ask_why(
     try:
         facts = anyio.run(ask)
     except NoAnswerError as error:
-        raise no_robot(host, port, device.name) from error
+        raise no_robot(device.host, device.port, device.name) from error
     robot = robot_of(facts.task)
     return LiveQuestion(facts, _counterfactuals_of(facts, robot), robot)
 

@@ -135,14 +135,14 @@ class ProgramStartup:
         """Pair the programs of this machine."""
         service = self._service
         if self._options.as_service:
-            for folder in (Path(service.teachers), Path(service.devices)):
+            for folder in service.pairings:
                 require_folder(folder)
         for name in sorted(OF_THIS_MACHINE):
-            local_pairing(Path(service.teachers), Path(service.devices), name, port=service.port)
+            local_pairing(*service.pairings, name, port=service.port)
 
     def _check_recordings(self) -> None:
         require_folder(Path(self._service.recordings))
 
     def _check_port(self) -> None:
-        nobody_paired = OF_THIS_MACHINE.issuperset(pairing_names(Path(self._service.teachers)))
+        nobody_paired = OF_THIS_MACHINE.issuperset(pairing_names(self._service.pairings.teachers))
         require_port(LOOPBACK if nobody_paired else EVERYWHERE, self._service.port)

@@ -2,12 +2,14 @@
 
 import ipaddress
 import re
+from pathlib import Path
 from typing import Annotated, Final, Literal
 
 from pydantic import Field, PlainValidator
 
 from config.settings import Settings, load_settings
 from config.settings_files import find_config
+from kurt2rt.channel.security.pairing import PairingFolders
 from kurt2rt.platform.realtime_priority import UNIT_PRIORITY
 
 AUTO: Final = "auto"
@@ -54,6 +56,11 @@ class ServiceSettings(Settings):
     page_address: Annotated[str, PlainValidator(page_address_of)]
     recordings: str
     recordings_mb: Annotated[int, Field(ge=10, le=1_000_000)]
+
+    @property
+    def pairings(self) -> PairingFolders:
+        """Folders of both sides of all pairings."""
+        return PairingFolders(Path(self.teachers), Path(self.devices))
 
     @property
     def priority(self) -> int:

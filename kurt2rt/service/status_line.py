@@ -44,20 +44,14 @@ def format_guard(status: ProgramStatus) -> list[str]:
 
 def format_alarms(status: ProgramStatus, health: Health) -> list[str]:
     """Return what is wrong besides what the guard changes in passing, each part in words."""
-    runtime = status.runtime
-    parts = []
-    if status.unsaved_lessons:
-        parts.append(f"{status.unsaved_lessons} lessons not saved yet")
-    if status.saving_error is not None:
-        parts.append(status.saving_error)
-    if runtime.handler.updater.error:
-        parts.append(runtime.handler.updater.error)
-    if status.channel_trouble:
-        parts.append(status.channel_trouble)
-    if status.recording_trouble:
-        parts.append(status.recording_trouble)
-    if health.trouble:
-        parts.append(health.trouble)
-    if health.foreign_control:
-        parts.append(f"{health.foreign_control} CONTROL frames of another sender so far")
-    return parts
+    unsaved, foreign = status.unsaved_lessons, health.foreign_control
+    alarms = (
+        f"{unsaved} lessons not saved yet" if unsaved else None,
+        status.saving_error,
+        status.runtime.handler.updater.error,
+        status.channel_trouble,
+        status.recording_trouble,
+        health.trouble,
+        f"{foreign} CONTROL frames of another sender so far" if foreign else None,
+    )
+    return [each for each in alarms if each]

@@ -4,6 +4,7 @@ import io
 import math
 import os
 import stat
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from kurt2rt.channel.security.pairing import pair
 from kurt2rt.cli.live_screen import LiveScreen
 from kurt2rt.cli.terminal_screen import has_desktop
 from kurt2rt.core.teaching.question import Question
+from kurt2rt.platform.text_table import print_lines
 from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages
 from tests.cli.pseudo_terminal import ProgramInTerminal, Terminal
 
@@ -28,6 +30,7 @@ class Shown:
         self._sent = io.StringIO()
         console = Console(file=self._sent, force_terminal=True, width=80, height=height, _environ={})
         self.screen = LiveScreen(console, for_phones=for_phones)
+        self.print = partial(print_lines, console)
 
     def lines(self) -> list[str]:
         terminal = Terminal()
@@ -37,15 +40,15 @@ class Shown:
 
 def test_the_status_is_rewritten_in_place_and_lines_go_above_it() -> None:
     shown = Shown(for_phones=False)
-    shown.screen.print("first")
+    shown.print("first")
     shown.screen.pin(ServedPages((LOCAL,), network=False, trouble=""))
     for second in range(5):
         shown.screen.show(f"{second}.0 s  forward", "1 RLAs", [])
-        shown.screen.print(f"question {second}")
+        shown.print(f"question {second}")
     address = f"page  {LOCAL.link}"
     assert shown.lines() == ["first", *(f"question {n}" for n in range(5)), address, "4.0 s  forward", "1 RLAs"]
     shown.screen.close()
-    shown.screen.print("the robot stands")
+    shown.print("the robot stands")
     assert [line for line in shown.lines() if line][-2:] == ["question 4", "the robot stands"]
     assert address not in shown.lines()
 

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -88,5 +89,5 @@ def test_why_live_asks_a_running_robot_as_an_onlooker(
 def test_ask_why_without_a_robot_raises_no_answer(tmp_path: Path) -> None:
     device = local_pairing(tmp_path / "teachers", tmp_path / "devices", ONLOOKER).device
     with pytest.raises(NoAnswerError, match=re.escape(str(no_robot("127.0.0.1", 9, ONLOOKER)))) as refused:
-        ask_why(device, "127.0.0.1", 9, lambda _: load_robot(), patience_s=0.1)
+        ask_why(replace(device, port=9), lambda _: load_robot(), patience_s=0.1)
     assert refused.value.code is NoAnswer.NO_ROBOT

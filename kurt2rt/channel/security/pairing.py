@@ -37,6 +37,7 @@ USED = "used"
 """File on the robot's side whose time is that of the device's last message."""
 
 PORT = 5683
+_HERE = "127.0.0.1"
 
 _NAME = re.compile(r"[a-z0-9-]{1,24}")
 _DEVICE = "device.json"
@@ -96,14 +97,13 @@ class PairingInfo:
     """Time of the device's last message, to the minute; None: never."""
 
 
-def pair(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", port: int = PORT) -> Pairing:
+def pair(teachers: Path, devices: Path, name: str, *, port: int = PORT) -> Pairing:
     """Make a new pairing; a running robot accepts it within a second.
 
     Args:
         teachers: folder of the robot's sides.
         devices: folder of the devices' sides.
         name: of the device and its teacher.
-        host: address of the robot, for the device.
         port: UDP port of the robot.
 
     Raises:
@@ -118,17 +118,16 @@ def pair(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", p
                 raise CredentialsError(
                     "is paired already", where=side / name, do=f"for new keys: kurt2rt pair {name} --renew"
                 )
-        return _make(teachers, devices, name, host, port)
+        return _make(teachers, devices, name, port)
 
 
-def renew(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", port: int = PORT) -> Pairing:
+def renew(teachers: Path, devices: Path, name: str, *, port: int = PORT) -> Pairing:
     """Give a pairing new secrets, ids and token; the old ones are refused from now on.
 
     Args:
         teachers: folder of the robot's sides.
         devices: folder of the devices' sides.
         name: of the device.
-        host: address of the robot, for the device.
         port: UDP port of the robot.
 
     Raises:
@@ -137,7 +136,7 @@ def renew(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", 
     _require_free_name(name)
     with _changing(teachers, devices):
         _remove(teachers, devices, name)
-        return _make(teachers, devices, name, host, port)
+        return _make(teachers, devices, name, port)
 
 
 def revoke(teachers: Path, devices: Path, name: str) -> None:
@@ -182,10 +181,20 @@ def local_pairing(teachers: Path, devices: Path, name: str = LOCAL, *, port: int
     with _changing(teachers, devices):
         if _fit(teachers / name, devices / name):
             device = read_device(devices / name)
-            return Pairing(teachers / name, replace(device, host="127.0.0.1", port=port))
+            return Pairing(teachers / name, replace(device, host=_HERE, port=port))
         if any(os.path.lexists(side / name) for side in (teachers, devices)):
             _remove(teachers, devices, name)
-        return _make(teachers, devices, name, "127.0.0.1", port)
+        return _make(teachers, devices, name, port)
+
+
+def open_device(pairings: PairingFolders, name: str, port: int) -> Device:
+    """Return the device's side of a pairing; one of this machine's own gets `port`, and is made if absent.
+
+    `port`: UDP port of the robot at this machine. Raises CredentialsError.
+    """
+    if name in OF_THIS_MACHINE:
+        return local_pairing(*pairings, name, port=port).device
+    return read_device(pairings.devices / name)
 
 
 def read_device(folder: Path) -> Device:
@@ -260,7 +269,7 @@ def _changing(teachers: Path, devices: Path) -> Iterator[None]:
         ) from error
 
 
-def _make(teachers: Path, devices: Path, name: str, host: str, port: int) -> Pairing:
+def _make(teachers: Path, devices: Path, name: str, port: int) -> Pairing:
     taken = _ids_taken(teachers)
     robot_id = _new_id(taken)
     device_id = _new_id({*taken, robot_id})
@@ -271,12 +280,12 @@ def _make(teachers: Path, devices: Path, name: str, host: str, port: int) -> Pai
     paired_s = int(time.time())
     # Written at once, because a context without it counts as damaged, not as new.
     sequence: dict[str, Any] = {"next-to-send": 0, "received": UNKNOWN}
-    device = Device(devices / name, name, host, port, secrets.token_urlsafe(_TOKEN_BYTES))
+    device = Device(devices / name, name, _HERE, port, secrets.token_urlsafe(_TOKEN_BYTES))
     of_device = {
         SETTINGS: {"sender-id_hex": device_id, "recipient-id_hex": robot_id, PAIRED_AT: paired_s},
         SECRET: secret,
         SEQUENCE: sequence,
-        _DEVICE: {"name": name, "host": host, "port": port, "token": device.token},
+        _DEVICE: {"name": name, "host": _HERE, "port": port, "token": device.token},
     }
     of_robot = {
         SETTINGS: {"sender-id_hex": robot_id, "recipient-id_hex": device_id, PAIRED_AT: paired_s},

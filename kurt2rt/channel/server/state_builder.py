@@ -130,27 +130,16 @@ class StateBuilder:
 
     def _nearest(self, record: TickRecord) -> _Nearest:
         match = record.decision.match
-        if match is None:
-            radius = self._radius(record.decision.asks_at)
-            return _Nearest(
-                nearest=None,
-                nearest_action=None,
-                nearest_image="",
-                distance=float("inf"),
-                radius=radius,
-                taught_by="",
-                taught_at="",
-                nearest_value=None,
-            )
+        nearest = None if match is None else match.rla
         return _Nearest(
-            nearest=match.rla.rla_id,
-            nearest_action=match.rla.action,
-            nearest_image=match.rla.image,
-            distance=match.distance,
-            radius=match.radius,
-            taught_by=match.rla.origin.teacher,
-            taught_at=self._parts.journal.stamp_of(match.rla.origin.command_id),
-            nearest_value=self._withdrawn_at(match.rla),
+            nearest=None if nearest is None else nearest.rla_id,
+            nearest_action=None if nearest is None else nearest.action,
+            nearest_image="" if nearest is None else nearest.image,
+            distance=math.inf if match is None else match.distance,
+            radius=self._radius(record.decision.asks_at) if match is None else match.radius,
+            taught_by="" if nearest is None else nearest.origin.teacher,
+            taught_at="" if nearest is None else self._parts.journal.stamp_of(nearest.origin.command_id),
+            nearest_value=None if nearest is None else self._withdrawn_at(nearest),
         )
 
     def _critic(self, record: TickRecord) -> _Critic:

@@ -1,17 +1,14 @@
-"""Options, progress bar and output shared by the commands of `kurt2rt knowledge`."""
+"""Options and output shared by the commands of `kurt2rt knowledge`."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.runs.replay.counterfactual import Counterfactual
-from kurt2rt.runs.replay.trial import Report, format_answer
+from kurt2rt.runs.replay.trial import format_answer
 
 WIDE = 140
 _MOST_STRETCHES = 8
@@ -20,21 +17,6 @@ TEACHER = "command line"
 """Teacher of the lessons that these commands write."""
 
 KnowledgeFile = Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt train or kurt2rt run leaves it.")]
-
-
-@contextmanager
-def replaying() -> Iterator[Report]:
-    """Show the progress of a replay on standard error, if that is a terminal."""
-    columns = (
-        TextColumn("replaying {task.description}"),
-        BarColumn(bar_width=20),
-        TextColumn("{task.completed:.0f} of {task.total:.0f} s"),
-        TimeRemainingColumn(),
-    )
-    console = Console(stderr=True)
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
-        line = progress.add_task("", total=0.0)
-        yield lambda run, done_s, whole_s: progress.update(line, description=run, completed=done_s, total=whole_s)
 
 
 def format_lesson(record: LessonRecord) -> str:

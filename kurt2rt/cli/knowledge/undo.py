@@ -9,7 +9,8 @@ import typer
 
 from config.errors import ExitCode
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, change_lines, format_lesson, replaying
+from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, change_lines, format_lesson
+from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import say
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.knowledge.journal.writer import utc_now
@@ -130,7 +131,7 @@ def _question(planned: UndoPlan, what: str) -> str:
 def _show(planned: UndoPlan, runs: Path | None) -> None:
     recordings = runs or Path(load_service().recordings)
     try_on = preview if runs else preview_on_newest
-    with replaying() as report:
+    with job_bars(transient=True) as report:
         shown = try_on(planned, recordings, report)
     for tried in shown.runs:
         for line in change_lines(tried.run, tried.found, tried.from_s):

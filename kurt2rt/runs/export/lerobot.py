@@ -3,10 +3,9 @@
 import json
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -16,9 +15,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from kurt2rt.runs.export.episodes import Column, Episode, Feature, features_of, read_episodes, ticks_per_frame
-from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
-from kurt2rt.runs.replay.run import Run
+from kurt2rt.runs.replay.run import Report, Run, progress_reporter
 
 FORMAT = "v3.0"
 FILE_MB, FILES_PER_CHUNK = 100, 1000
@@ -34,7 +32,6 @@ _COUNTED = {
 """Features that every data set has."""
 
 
-OnEntry = Callable[[Run, TickEntry], None]
 Statistics = dict[str, dict[str, Column]]
 """Statistics by feature and name, each (length,); count (1,)."""
 _QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
@@ -55,7 +52,7 @@ def export_lerobot(
     runs: Sequence[Run],
     folder: Path,
     fps: int,
-    on_entry: OnEntry = lambda *_: None,
+    report: Report = lambda *_: None,
 ) -> list[ExportedRun]:
     """Write a data set into a new folder, which appears when it is complete, and return what each run gave.
 
@@ -63,7 +60,7 @@ def export_lerobot(
         runs: of one robot, opened with `partial` if their beginning may be missing.
         folder: nothing may be there yet, or an empty folder.
         fps: frames a second.
-        on_entry: called with each tick.
+        report: called now and then with a run's name, its seconds that were read, and its length.
 
     Raises:
         RecordingError: a run cannot be read or is of another robot, or `fps` does not fit the ticks.
@@ -81,7 +78,7 @@ def export_lerobot(
     with _new_folder(folder) as new, DatasetWriter(new, features, fps, runs[0].robot.name) as writer:
         for run in runs:
             done = ExportedRun(run.name)
-            for episode in read_episodes(run, ticks_per_frame(run.robot, fps), partial(on_entry, run)):
+            for episode in read_episodes(run, ticks_per_frame(run.robot, fps), progress_reporter(run, report)):
                 writer.add(episode, _source_of(run, episode))
                 done.episodes += 1
                 done.frames += episode.frames

@@ -7,13 +7,14 @@ from typing import NamedTuple
 from kurt2rt.core.decision.decision import BY_RLA, DecisionCause
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.tick_record import TickRecord
+from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.replay.counterfactual_policy import (
     CounterfactualPolicy,
     PolicyAnswer,
     PolicyAnswers,
     recorded_answers,
 )
-from kurt2rt.runs.replay.replay import Replay, ReplayedTick, empty_run_error
+from kurt2rt.runs.replay.replay import Replay, empty_run_error
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runtime import Runtime
 
@@ -73,12 +74,12 @@ def counterfactual(
     run: Run,
     would_be: CounterfactualPolicy,
     was: CounterfactualPolicy | None = None,
-    on_tick: Callable[[ReplayedTick], None] | None = None,
+    on_entry: Callable[[TickEntry], None] = lambda _: None,
     from_s: float = 0.0,
 ) -> Counterfactual:
     """Replay a run and compare the answers of two policies to each situation.
 
-    `was`: None: the run's own knowledge. `on_tick`: called for each tick, for progress. `from_s`: earlier ticks, in s
+    `was`: None: the run's own knowledge. `on_entry`: called for each tick, for progress. `from_s`: earlier ticks, in s
     since the first one, are replayed and not compared. Raises RecordingError.
     """
     replay = Replay(run)
@@ -88,8 +89,7 @@ def counterfactual(
         at_s, record, runtime = run.elapsed_s(tick.entry), tick.record, replay.runtime
         if at_s >= from_s:
             count.update(at_s, record, before(record, runtime), would_be.answers(record, runtime))
-        if on_tick is not None:
-            on_tick(tick)
+        on_entry(tick.entry)
     found = count.result(run.trouble)
     if not found.ticks:
         raise empty_run_error(run)

@@ -4,6 +4,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import TypeVar
 
 from pydantic import ValidationError
@@ -30,6 +31,9 @@ from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_head import RunHead
 
 DecodedT = TypeVar("DecodedT")
+Report = Callable[[str, float, float], None]
+"""Callback with a run's name, its seconds that were read, and its whole length in s."""
+_REPORT_EVERY_TICKS = 500
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,3 +262,15 @@ def _decoded(decode: Callable[[bytes], DecodedT], data: bytes) -> DecodedT:
         return decode(data)
     except ValueError as error:
         raise RecordingError(str(error)) from error
+
+
+def progress_reporter(run: Run, report: Report) -> Callable[[TickEntry], None]:
+    """Return a callback for each tick that is read of a run; it calls `report` every 500 ticks."""
+    name, whole_s = Path(run.name).name, run.duration_s
+
+    def on_entry(entry: TickEntry) -> None:
+        if entry.number % _REPORT_EVERY_TICKS == 1:
+            done_s = run.elapsed_s(entry)
+            report(name, done_s, max(whole_s, done_s))
+
+    return on_entry

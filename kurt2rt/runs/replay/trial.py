@@ -1,6 +1,5 @@
 """Recorded runs that knowledge can be tried on."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,13 +12,8 @@ from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import runs_in, segments_in
 from kurt2rt.runs.replay.counterfactual_policy import PolicyAnswer
 from kurt2rt.runs.replay.reader import read_run
-from kurt2rt.runs.replay.replay import ReplayedTick
 from kurt2rt.runs.replay.run import Run
 
-Report = Callable[[str, float, float], None]
-"""Callback with a run's name, the seconds replayed and the run's seconds."""
-
-_REPORT_EVERY_TICKS = 500
 _NEWEST = 20
 """Most recent runs that are searched for a compatible one."""
 
@@ -82,17 +76,6 @@ def newest_compatible_run(recordings: Path, binding: KnowledgeBinding, knowledge
             return RecentRuns((run,), tuple(left_out))
         newest = newest or run
     return RecentRuns(() if newest is None else (newest,), tuple(left_out))
-
-
-def progress_reporter(run: Run, report: Report) -> Callable[[ReplayedTick], None]:
-    """Return a callback for each replayed tick of a run; it calls `report` every 500 ticks."""
-    whole_s = run.duration_s
-
-    def tell(tick: ReplayedTick) -> None:
-        if tick.entry.number % _REPORT_EVERY_TICKS == 1:
-            report(run.name, run.elapsed_s(tick.entry), whole_s)
-
-    return tell
 
 
 def format_answer(answer: PolicyAnswer) -> str:

@@ -11,14 +11,8 @@ from kurt2rt.knowledge.versions.undo import UndoPlan
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.replay.counterfactual import Counterfactual, counterfactual
 from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy
-from kurt2rt.runs.replay.run import Run
-from kurt2rt.runs.replay.trial import (
-    RecentRuns,
-    Report,
-    compatible_runs,
-    newest_compatible_run,
-    progress_reporter,
-)
+from kurt2rt.runs.replay.run import Report, Run, progress_reporter
+from kurt2rt.runs.replay.trial import RecentRuns, compatible_runs, newest_compatible_run
 
 LAST_S: Final = 600.0
 """End of the newest run that is compared by default; the part before it is replayed only, in half the time."""

@@ -3,8 +3,9 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.replay.comparison import TickDifference, compare
-from kurt2rt.runs.replay.replay import Replay, ReplayedTick, empty_run_error
+from kurt2rt.runs.replay.replay import Replay, empty_run_error
 from kurt2rt.runs.replay.run import Run
 
 
@@ -31,10 +32,10 @@ class ReplayVerdict:
         return not self.differences
 
 
-def verify(run: Run, on_tick: Callable[[ReplayedTick], None] | None = None) -> ReplayVerdict:
+def verify(run: Run, on_entry: Callable[[TickEntry], None] = lambda _: None) -> ReplayVerdict:
     """Replay a run up to the first difference, and return the verdict.
 
-    `on_tick` is called for each equal tick. Raises RecordingError, also for a run without ticks.
+    `on_entry` is called for each equal tick. Raises RecordingError, also for a run without ticks.
     """
     ticks = knowledge = 0
     lasted_s = 0.0
@@ -46,8 +47,7 @@ def verify(run: Run, on_tick: Callable[[ReplayedTick], None] | None = None) -> R
         lasted_s = run.elapsed_s(tick.entry)
         ticks += 1
         knowledge += tick.entry.knowledge is not None
-        if on_tick is not None:
-            on_tick(tick)
+        on_entry(tick.entry)
     if not ticks and not differences:
         raise empty_run_error(run)
     return ReplayVerdict(ticks, lasted_s, knowledge, tuple(differences), run.trouble, run.has_no_gap)

@@ -8,7 +8,6 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 import psutil
@@ -165,12 +164,10 @@ class HealthMonitor:
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._waiting.put(None)
         self._thread.join(_ENDS_WITHIN_S)
-        self._disks.__exit__(kind, error, trace)
+        self._disks.__exit__()
 
     def _punctuality(self, snapshot: Snapshot) -> TickLateness:
         timer = self._runtime.timer
