@@ -62,11 +62,6 @@ class ClassRobot:
         """File of its runtime settings, in the folder of its keys, knowledge and recordings."""
         return Path(self.service.knowledge).with_name("settings.yaml")
 
-    @property
-    def links(self) -> tuple[str, ...]:
-        """Links to its page: this machine's, then the phone's; empty while the page is not served."""
-        return () if self.report is None else self.report.pages
-
     def start(self, programs: ChildProcesses, words: Sequence[str]) -> None:
         """Write its settings, pair its phone at the first start, start its program and follow its reports.
 
@@ -76,8 +71,8 @@ class ClassRobot:
         require_port(EVERYWHERE, service.port)
         listen(service.page_port, everywhere=True).close()
         write_durably(self.settings_file, service.model_dump_json(indent=2))
-        if device not in pairing_names(Path(service.teachers)):
-            pair(Path(service.teachers), Path(service.devices), device, port=service.port)
+        if device not in pairing_names(service.pairings.teachers):
+            pair(*service.pairings, device, port=service.port)
         own = ("--settings", str(self.settings_file), "--page-port", str(service.page_port), *words)
         programs.start(self.name, "run", "--phone", "--no-open", *own, restarts=True, on_line=self._read_line)
         threading.Thread(target=self._follow, name=self.name, daemon=True).start()
@@ -143,26 +138,29 @@ def run_robots(
         for each in robots:
             each.start(programs, words)
         while not ended.wait(_REFRESH_S) and time.monotonic() < ends_at_s:
-            links = [each.links for each in robots]
+            reports = [each.report for each in robots]  # its threads replace them at any time
+            links = [() if each is None else each.pages for each in reports]
             if all(links) and links != told:
-                write_private(folder / "robots.html", page_of_codes(robots))
+                write_private(folder / "robots.html", page_of_codes(links))
                 if browser and not told and has_desktop():
                     open_file(folder / "robots.html")
                 told = links
-            live.update(Group(*_lines(robots, console.width)), refresh=True)
+            live.update(Group(*_lines(robots, reports, console.width)), refresh=True)
     files = f"{folder}/robot-*/*.knowledge"
     print_lines(console, f"all robots stand; to hand in: {files}", f"to examine all: kurt2rt exam {files}", whole=True)
 
 
-def _lines(robots: Sequence[ClassRobot], width: int) -> "Iterator[TextTable | Text]":
+def _lines(
+    robots: Sequence[ClassRobot], reports: Sequence[HealthReport | None], width: int
+) -> "Iterator[TextTable | Text]":
     table = TextTable(*(Column(each, number=each in _NUMBERS, whole=each not in _NUMBERS) for each in _HEADINGS))
-    for each in robots:
+    for each, report in zip(robots, reports, strict=True):
         own = str(each.number), f":{each.service.page_port}"
-        table.add_row(*own, *(_cells(each.report, width) if each.report else (*[""] * 6, "starts")))
+        table.add_row(*own, *(_cells(report, width) if report else (*[""] * 6, "starts")))
     yield table
-    for each in robots:
-        if each.report is not None and each.report.troubles:
-            names = ", ".join(dict.fromkeys(map(name_of, each.report.troubles)))
+    for each, report in zip(robots, reports, strict=True):
+        if report is not None and report.troubles:
+            names = ", ".join(dict.fromkeys(map(name_of, report.troubles)))
             yield Text(f"! {each.name}: {names}; kurt2rt status --settings {each.settings_file}", style="yellow")
     yield Text(f"codes to scan: {robots[0].settings_file.parents[1]}/robots.html; Ctrl-C ends all", style="dim")
 
@@ -174,16 +172,16 @@ def _cells(report: HealthReport, width: int) -> tuple[str | Text, ...]:
     return teacher, str(report.phase), str(report.rlas), alone, str(report.progress.asks), report.reached, does
 
 
-def page_of_codes(robots: Sequence[ClassRobot]) -> str:
+def page_of_codes(links: Sequence[Sequence[str]]) -> str:
     """Return an HTML page with the number of each robot, the code of its page for a phone, and a link for this machine.
 
-    The links hold tokens, so keep the page as a secret.
+    `links`: to the page of each robot, first this machine's. They hold tokens, so keep the page as a secret.
     """
 
-    def card(robot: ClassRobot) -> dict[str, object]:
-        here, *phones = robot.links
+    def card(number: int, of_robot: Sequence[str]) -> dict[str, object]:
+        here, *phones = of_robot
         codes = [segno.make(each, error="m", micro=False).svg_inline(omitsize=True) for each in phones[:1]]
-        return {"number": robot.number, "here": here, "codes": codes, "place": urlsplit((phones or [here])[0]).netloc}
+        return {"number": number, "here": here, "codes": codes, "place": urlsplit((phones or [here])[0]).netloc}
 
     template = jinja2.Environment(loader=jinja2.PackageLoader("kurt2rt.cli", ""), autoescape=True)
-    return template.get_template("robots.html.j2").render(robots=map(card, robots))
+    return template.get_template("robots.html.j2").render(robots=map(card, range(1, len(links) + 1), links))

@@ -9,6 +9,7 @@ import sys
 import time
 from dataclasses import replace
 from functools import partial
+from itertools import cycle
 from pathlib import Path
 
 import pytest
@@ -85,12 +86,24 @@ def test_robot_that_ends_is_restarted_with_its_own_settings(tmp_path: Path, monk
     ]
 
 
+def test_report_that_ends_meanwhile_ends_no_class(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    waits = (sys.executable, "-c", "import sys; sys.stdin.read()")
+    monkeypatch.setattr(robots, "ChildProcesses", partial(ChildProcesses, start=waits))
+    monkeypatch.setattr(robots, "_REFRESH_S", 0.01)
+    reports = cycle([replace(WELL, pages=(HERE,)), None])
+    monkeypatch.setattr(robots.ClassRobot, "report", property(lambda _: next(reports), lambda *_: None))
+    console = Console(file=io.StringIO(), width=80)
+    run_robots(class_robots(2, settings_with_free_ports())[:1], (), console, browser=False, seconds=0.2)
+    assert HERE in (tmp_path / "var/class/robots.html").read_text("utf-8")
+
+
 def test_table_of_all_robots_fits_80_columns() -> None:
     one, two = class_robots(2, load_service())
-    one.report = replace(
+    report = replace(
         ILL, teacher="a-long-name-of-a-device", phase=2, reached="10.5 rounds", progress=Progress(60, 100, 12)
     )
-    table, trouble, hint = robots._lines((one, two), 80)
+    table, trouble, hint = robots._lines((one, two), (report, None), 80)
     assert isinstance(table, TextTable)
     first, second = [line.plain for line in table.lines(80)][2:]
     assert " ".join(first.split()) == "1 :8643 a-long-n 2 90 100 % 12 10.5 rounds stands: blind"
@@ -101,9 +114,7 @@ def test_table_of_all_robots_fits_80_columns() -> None:
 
 
 def test_page_has_the_code_of_each_phone_page() -> None:
-    one, two = class_robots(2, load_service())
-    one.report, two.report = replace(WELL, pages=(HERE, PHONE)), replace(WELL, pages=(HERE,))
-    page = page_of_codes((one, two))
+    page = page_of_codes([(HERE, PHONE), (HERE,)])
     (path,) = re.findall(r'<path[^>]* d="[^"]*"', page)
     assert path in segno.make(PHONE, error="m", micro=False).svg_inline(omitsize=True)
     assert "192.168.0.7:8644" in page
