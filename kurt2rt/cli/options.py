@@ -54,14 +54,6 @@ def task_option(default: str = "") -> Any:
     return _named("--task", "tasks", f"{_TASK} {default}".rstrip())
 
 
-def search_argument() -> Any:
-    """Return the argument of `kurt2rt study search`."""
-    return typer.Argument(
-        help="Search: a name in config/searches, or the path of a YAML file.",
-        autocompletion=_names_in("searches"),
-    )
-
-
 def world_option(default: str = "") -> Any:
     """Return --world, the same in every command; `default` describes the world without it."""
     return _named("--world", "worlds", f"{_WORLD} {default}".rstrip())
@@ -122,6 +114,12 @@ Seed = Annotated[
 OutFolder = Annotated[Path, typer.Option("--out", help="Folder for the results; made if it is missing.")]
 Jobs = Annotated[
     int, typer.Option("--jobs", min=1, metavar="N", help="Number of processes for many robots; 1: this process alone.")
+]
+SearchName = Annotated[
+    str,
+    typer.Argument(
+        help="Search: a name in config/searches, or the path of a YAML file.", autocompletion=_names_in("searches")
+    ),
 ]
 ALL_PROCESSORS = os.cpu_count() or 1
 Changes = Annotated[
@@ -202,13 +200,10 @@ def parse_seeds(text: str) -> list[int]:
         for part in text.split(","):
             seeds.extend(_seeds_of(part))
     except ValueError as error:
-        raise typer.BadParameter(
-            f"expected seeds such as 100-119 or 1,5,7-9 (got {text!r})", param_hint="--seeds"
-        ) from error
-    if len(seeds) > _MOST_SEEDS:
-        raise typer.BadParameter(
-            f"too many seeds (got {text!r}, allowed are {_MOST_SEEDS} at most)", param_hint="--seeds"
-        )
+        expected = f"expected seeds such as 100-119 or 1,5,7-9 (got {text!r})"
+        raise typer.BadParameter(expected, param_hint="--seeds") from error
+    too_many = f"too many seeds (got {text!r}, allowed are {_MOST_SEEDS} at most)"
+    refuse_if(len(seeds) > _MOST_SEEDS, too_many, "--seeds")
     refuse_if(len(set(seeds)) != len(seeds), f"no seed may appear twice (got {text!r})", "--seeds")
     return seeds
 

@@ -13,7 +13,7 @@ from rich.console import Console
 from config.errors import UserError
 from kurt2rt.channel.security.pairing import Device, read_device
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.options import RobotAddress, RobotPort, SettingsName
+from kurt2rt.cli.options import RobotAddress, RobotPort, SettingsName, refuse_if
 from kurt2rt.cli.teach_shutdown import until_teaching_ends
 from kurt2rt.platform.text_table import print_lines
 from kurt2rt.ros.settings import Naming, RosSettings, is_ros_name
@@ -74,8 +74,8 @@ def ros(options: _Options) -> None:
     closed. Waits for a robot and a router that are not there yet; ends on Ctrl-C.
     docs/other-robots.md has the rest.
     """
-    if options.namespace and not is_ros_name(options.namespace):
-        raise typer.BadParameter("not a name of ROS; use letters, digits and _, joined by /", param_hint="--namespace")
+    is_none = bool(options.namespace) and not is_ros_name(options.namespace)
+    refuse_if(is_none, "not a name of ROS; use letters, digits and _, joined by /", "--namespace")
     import kurt2rt.ros.session  # noqa: F401  # names the extra `ros` before anything else is wrong
 
     service = load_service(options.settings)

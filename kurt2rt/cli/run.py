@@ -285,8 +285,7 @@ def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     if options.auto and options.knowledge is not None:
         require_agreement(options.knowledge)
     settings, taught, robot = _checked(options, task)
-    if options.auto and taught.mid is not None:
-        raise typer.BadParameter(mid_level_refusal(taught), param_hint="--auto")
+    refuse_if(options.auto and taught.mid is not None, mid_level_refusal(taught), "--auto")
     run_options = _run_options(options, live_view, recorded=recorded)
     screen = TerminalScreen(
         Console(),

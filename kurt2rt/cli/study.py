@@ -14,12 +14,13 @@ from kurt2rt.cli.options import (
     DEFAULT_TEACHER,
     Changes,
     RobotName,
+    SearchName,
     TaskOfTheFile,
     Teacher,
     changes_of,
     parse_seeds,
+    refuse_if,
     results_option,
-    search_argument,
     task_option,
 )
 from kurt2rt.cli.progress import one_bar
@@ -55,8 +56,8 @@ study = typer.Typer(
 )
 
 
-def _no_default(told: str, *names: str, **more: Any) -> Any:
-    return typer.Option(*names, help=told, show_default=False, **more)
+def _no_default(told: str, **more: Any) -> Any:
+    return typer.Option(help=told, show_default=False, **more)
 
 
 def _seeds(default: str) -> str:
@@ -286,12 +287,12 @@ class _Certify(JobOptions):
     def load(self) -> tuple[TaskSettings, RobotSettings]:
         changes = changes_of(self.changes) | ({} if self.seconds is None else {_SECONDS: f"{self.seconds:g}"})
         task = load_task(task_of_file(self.knowledge, self.task), changes=changes)
-        if task.mid is not None:
-            raise typer.BadParameter(
-                f"task {task.name} has a mid level, whose routes and places are no worlds to draw from; use kurt2rt "
-                "train --seeds",
-                param_hint="KNOWLEDGE",
-            )
+        refuse_if(
+            task.mid is not None,
+            f"task {task.name} has a mid level, whose routes and places are no worlds to draw from; use kurt2rt train "
+            "--seeds",
+            "KNOWLEDGE",
+        )
         return task, load_robot_of(self.robot_settings, self.task or task_of_file(self.knowledge))
 
     @property
@@ -347,7 +348,7 @@ def certify(options: _Certify) -> None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Search(JobOptions):
-    search: Annotated[str, search_argument()]
+    search: SearchName
     trials: Annotated[
         int | None,
         typer.Option(min=1, metavar="N", help="Number of trials. Default: that of the file.", show_default=False),

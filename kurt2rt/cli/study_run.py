@@ -1,7 +1,7 @@
 """Options, run and end of a study, with one meaning in all of its commands."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -102,21 +102,17 @@ def say_if_interpreted() -> None:
         say("numba is not installed (extra fast): the batch runs as plain Python, as slow as the bus", stderr=True)
 
 
-@contextmanager
-def open_executor(cluster: Path | None, jobs: int) -> Iterator[Executor]:
-    """Yield the executor of --cluster; without it, one with so many processes of this machine.
+def open_executor(cluster: Path | None, jobs: int) -> AbstractContextManager[Executor]:
+    """Return a context with the executor of --cluster; without it, of one with so many processes of this machine.
 
     Raises ClusterError if `cluster` is no file of a cluster, or no scheduler of it answers.
     """
     if cluster is None:
-        with open_processes(jobs) as local:
-            yield local
-        return
+        return open_processes(jobs)
     # Not at the top: Dask is an extra, and takes a second.
     from kurt2rt.experiments.study.cluster import open_cluster
 
-    with open_cluster(cluster) as executor:
-        yield executor
+    return open_cluster(cluster)
 
 
 @dataclass(frozen=True, slots=True)

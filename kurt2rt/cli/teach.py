@@ -87,12 +87,12 @@ class _Options:
         """Raise typer.BadParameter if options contradict each other."""
         refuse_if(self.terminal and self.auto, "one teacher at a time: --terminal or --auto", "--auto")
         others = (self.terminal, self.auto, self.device, self.robot, self.public_address)
-        if self.phone and any(each not in (False, None) for each in others):
-            raise typer.BadParameter(
-                "it serves the pages of all devices, on the robot's machine; leave out --terminal, --auto, --device, "
-                "--robot and --public-address",
-                param_hint="--phone",
-            )
+        refuse_if(
+            self.phone and any(each not in (False, None) for each in others),
+            "it serves the pages of all devices, on the robot's machine; leave out --terminal, --auto, --device, "
+            "--robot and --public-address",
+            "--phone",
+        )
 
 
 @takes_options(_Options)

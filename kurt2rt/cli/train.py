@@ -3,13 +3,12 @@
 from pathlib import Path
 
 import anyio
-import typer
 
 from behaviors.metrics.errands import ErrandsSettings
 from behaviors.metrics.route import RouteSettings
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import print_json
-from kurt2rt.cli.options import changes_of
+from kurt2rt.cli.options import changes_of, refuse_if
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.study_run import job_parts, run_study
 from kurt2rt.cli.tables import console_of, say
@@ -65,11 +64,11 @@ def train(options: TrainOptions) -> None:
     """
     setup = _setup(_task_name(options), options)
     task = setup.task
-    if options.seeds is None and options.engine is EngineRequest.COMPILED:
-        raise typer.BadParameter("compiled is for many robots: give --seeds as well", param_hint="--engine")
-    if options.seeds is not None and options.knowledge is not None:
-        raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
-    if task.mid is not None and options.engine is EngineRequest.COMPILED:
+    compiled, many = options.engine is EngineRequest.COMPILED, options.seeds is not None
+    refuse_if(compiled and not many, "compiled is for many robots: give --seeds as well", "--engine")
+    of_one = many and options.knowledge is not None
+    refuse_if(of_one, "each seed needs a file of its own: give --out instead", "--knowledge")
+    if task.mid is not None and compiled:
         say(f"{task.name}: lessons and exams on the CAN bus, because a batch does not know a mid level", stderr=True)
     if isinstance(task.metric, ErrandsSettings):
         errands(setup, options)

@@ -1,8 +1,8 @@
 """`kurt2rt train` of route and errands: robots that know the streets are taught routes, or sent to places."""
 
 import anyio
-import typer
 
+from kurt2rt.cli.options import refuse_if
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.study_run import job_parts, run_study
 from kurt2rt.cli.tables import print_told
@@ -19,8 +19,7 @@ def require_no_route_options(task: TaskSettings, options: TrainOptions) -> None:
     """Raise typer.BadParameter if the options include one that only a task with a route has."""
     of_a_route = {"--decisions": options.decisions, "--basic": options.basic}
     for name, value in of_a_route.items():
-        if value:
-            raise typer.BadParameter(f"task {task.name} teaches no route; leave it out", param_hint=name)
+        refuse_if(bool(value), f"task {task.name} teaches no route; leave it out", name)
 
 
 def one_route(setup: TrainSetup, options: TrainOptions) -> None:
@@ -36,8 +35,7 @@ def one_route(setup: TrainSetup, options: TrainOptions) -> None:
     from kurt2rt.experiments.route.tables import draw_route, robot_table
 
     given = tuple(options.decisions or ())
-    if len(given) > 1:
-        raise typer.BadParameter("one robot is taught one route; give --seeds, too", param_hint="--decisions")
+    refuse_if(len(given) > 1, "one robot is taught one route; give --seeds, too", "--decisions")
     out = options.out or ROUTES
     plan = make_plan(setup.task, (options.seed,), given, job_parts(setup.robot, out), basic_folder=options.basic)
     (job,), task = plan.of(RouteJob), plan.of(RouteJob)[0].task
@@ -85,8 +83,8 @@ def errands(setup: TrainSetup, options: TrainOptions) -> None:
     """
     from kurt2rt.experiments.navigation.study import make_plan, tell
 
-    if options.decisions or options.knowledge is not None:
-        raise typer.BadParameter("errands take neither --decisions nor --knowledge; leave them out")
+    given = bool(options.decisions) or options.knowledge is not None
+    refuse_if(given, "errands take neither of these; leave them out", "--decisions, --knowledge")
     plan = make_plan(
         setup.task, options.all_seeds, job_parts(setup.robot, options.out or ERRANDS), basic_folder=options.basic
     )

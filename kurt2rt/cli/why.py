@@ -167,10 +167,8 @@ def _counted(entries: Iterator[TickEntry], on_entry: Callable[[TickEntry], None]
 def _show_decision(console: Console, run: Run, at_s: float, options: _Options) -> None:
     with job_bars(transient=True) as report:
         explained = explain_run(run, at_s, lambda done_s: report("replaying", done_s, at_s))
-    if explained.at_s < at_s - 1.0:
-        raise typer.BadParameter(
-            f"the run ends at {explained.at_s:.2f} s; give a moment before that", param_hint="--at"
-        )
+    ends = f"the run ends at {explained.at_s:.2f} s; give a moment before that"
+    refuse_if(explained.at_s < at_s - 1.0, ends, "--at")
     where = f"{_of(run)}, {explained.at_s:.2f} s (tick {explained.facts.tick})"
     if options.as_json:
         told = {

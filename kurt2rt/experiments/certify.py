@@ -18,7 +18,7 @@ from kurt2rt.experiments.lockstep.exam import ExamSetup
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, parse_break
 from kurt2rt.experiments.lockstep.trails import draw_drive, legend_below, panels_of
 from kurt2rt.experiments.study.exam_tables import WORLD
-from kurt2rt.experiments.study.figures import SavedFigure
+from kurt2rt.experiments.study.figures import SavedFigure, saved
 from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of, wilson_interval
 from kurt2rt.experiments.study.jobs import SEED, JobParts, Outcome, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash
@@ -36,7 +36,6 @@ from kurt2rt.experiments.study.table import (
 )
 from kurt2rt.knowledge.journal.loading import read_lessons
 from kurt2rt.platform.drive_picture import ASKED, START, TRAIL, draw_marks, draw_robot, draw_trail
-from kurt2rt.platform.save_figure import save_figure
 from simbridge.contracts.batch import BatchRefusedError
 
 BATCH_GAIN = 100.0
@@ -406,7 +405,7 @@ def draw_together(jobs: Sequence[BlockJob], drives: Sequence[DriveRow]) -> Saved
 
     `drives`: of all runs. Raises StudyError, OSError.
     """
-    clean, folder = sum(map(_is_clean, drives)), jobs[0].results.folder
+    clean = sum(map(_is_clean, drives))
     worlds = group_by([job.results.read(job, BlockOutcome).drives[0] for job in jobs], lambda drive: drive.world)
     figure, panels = panels_of(len(worlds), 3, (4.6, 5.0))
     for axes, (world, rows) in zip(panels, worlds, strict=True):
@@ -420,9 +419,8 @@ def draw_together(jobs: Sequence[BlockJob], drives: Sequence[DriveRow]) -> Saved
     colour = START if clean == len(drives) else ASKED
     box = {"boxstyle": "round,pad=0.5", "facecolor": "white", "edgecolor": colour, "linewidth": 3.0}
     figure.suptitle(stamp, fontsize=20, fontweight="bold", color=colour, bbox=box)
-    save_figure(figure, folder / "runs.png")
     caption = f"{len(jobs)} of {len(drives)} runs; those with a fault come first and are red."
-    return SavedFigure(folder / "runs.png", "Where it drove", caption)
+    return saved(figure, jobs[0].results.folder / "runs.png", "Where it drove", caption)
 
 
 def draw_worst(jobs: Iterable[BlockJob], commands: Sequence[str]) -> Iterator[SavedFigure]:
@@ -437,10 +435,9 @@ def draw_worst(jobs: Iterable[BlockJob], commands: Sequence[str]) -> Iterator[Sa
         draw_drive(axes, job.factory, drive)
         axes.set_title(f"Run {drive.seed} in world {label_of(drive.world)}")
         legend_below(axes)
-        save_figure(figure, path)
         asked = f"{drive.questions} times in the unknown" if drive.questions else ""
         parts = (f"world {label_of(drive.world)}", collisions_text(drive.collisions), asked, drive.early_end)
-        yield SavedFigure(path, f"Run {drive.seed}: {', '.join(filter(None, parts))}", command)
+        yield saved(figure, path, f"Run {drive.seed}: {', '.join(filter(None, parts))}", command)
 
 
 def tell(plan: StudyPlan[Certified], again: Sequence[BlockJob], words: Sequence[str], command: str) -> Told:

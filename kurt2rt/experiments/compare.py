@@ -10,7 +10,6 @@ from statistics import mean, median, stdev
 from typing import ClassVar, NamedTuple
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from scipy.stats import binomtest
 from scipy.stats import t as students_t
 
@@ -24,6 +23,7 @@ from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import ON_BUS
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
+from kurt2rt.experiments.lockstep.trails import panels_of
 from kurt2rt.experiments.study.examination import Checkpoint, Examiner, run_checkpoints
 from kurt2rt.experiments.study.figures import SavedFigure
 from kurt2rt.experiments.study.intervals import wilson_interval
@@ -409,8 +409,7 @@ def draw_curves(rows: Sequence[Row], about: Compared, path: Path) -> None:
     The last point of a line is the end of the lesson. The band is the 95 % interval of the RLA system.
     """
     tasks = about.tasks
-    figure = Figure(figsize=(9.6, 4.8 * len(tasks)), layout="constrained")
-    panels = figure.subplots(len(tasks), 1, squeeze=False).flatten().tolist()
+    figure, panels = panels_of(len(tasks), 1, (9.6, 4.8))
     for axes, task in zip(panels, tasks, strict=True):
         styles = cycle(_STYLES)
         for row in rows:

@@ -3,7 +3,7 @@
 import asyncio
 import hashlib
 from collections import OrderedDict
-from collections.abc import Awaitable, Callable, Coroutine, Mapping
+from collections.abc import Awaitable, Callable, Coroutine
 from dataclasses import replace
 from functools import partial
 from typing import Any, TypeVar
@@ -37,7 +37,7 @@ from kurt2rt.knowledge.files.atomic_write import SavedCopy
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runtime import Runtime
-from simbridge.contracts.world_refusal import WorldRefusal, WorldRefusedError
+from simbridge.contracts.world_refusal import WorldRefusedError
 
 Part = TypeVar("Part")
 
@@ -78,14 +78,6 @@ class PendingCommands:
             if oldest is None:
                 return
             del self._replies[oldest]
-
-
-WORLD_REFUSALS: Mapping[WorldRefusal, RefusalCode] = {
-    WorldRefusal.NO_WALL: RefusalCode.NO_WALL,
-    WorldRefusal.WALL_ON_ROBOT: RefusalCode.WALL_ON_ROBOT,
-    WorldRefusal.NO_ROOM: RefusalCode.NO_ROOM,
-    WorldRefusal.START_BLOCKED: RefusalCode.START_BLOCKED,
-}
 
 
 def failure(failed: RefusalCode, crashed: RefusalCode, error: Exception) -> Outcome:
@@ -385,7 +377,7 @@ class OffTickRequests:
                 world.put_robot(request.x_m, request.y_m, request.heading_rad)
             self._runtime.reposition()
         except WorldRefusedError as error:
-            return self._refused(Outcome(WORLD_REFUSALS[error.code], error.fields))
+            return self._refused(Outcome(RefusalCode[error.code.name], error.fields))
         return done(self._tick(), Outcome(ResultCode.ROBOT_PLACED))
 
     def _world(self) -> Reply:

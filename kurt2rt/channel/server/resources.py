@@ -194,7 +194,7 @@ class RobotSite:
     async def _respond(self, request: Any, sender: Sender) -> aiocoap.Message:
         path = path_of(request)
         if (str(request.code), path) == _DISCOVERY:
-            return _discovery()
+            return aiocoap.Message(code=aiocoap.CONTENT, payload=_links(), content_format=_LINK_FORMAT)
         if path not in PATHS:
             return aiocoap.Message(code=aiocoap.NOT_FOUND)
         if request.code != aiocoap.POST:
@@ -248,10 +248,6 @@ def _answer_stranger(request: Any) -> aiocoap.Message:
     if (str(request.code), path_of(request)) == _DISCOVERY:
         return _part_of_discovery(request.opt.block2)
     return aiocoap.Message(code=aiocoap.UNAUTHORIZED)
-
-
-def _discovery() -> aiocoap.Message:
-    return aiocoap.Message(code=aiocoap.CONTENT, payload=_links(), content_format=_LINK_FORMAT)
 
 
 def _part_of_discovery(wanted: Any) -> aiocoap.Message:

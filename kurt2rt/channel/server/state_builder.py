@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from typing import TypedDict
 
 from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
@@ -19,33 +18,6 @@ from kurt2rt.runtime import Runtime
 _SENSORS = (TroubleCode.SENSORS_UNHEARD, TroubleCode.SENSORS_SILENT)
 _LATENESS_EVERY = 20
 """Number of states between two percentiles, which cost more than a state."""
-
-
-class _Nearest(TypedDict):
-    nearest: int | None
-    nearest_action: str | None
-    nearest_image: str
-    distance: float
-    radius: float
-    taught_by: str
-    taught_at: str
-    nearest_value: float | None
-
-
-class _Critic(TypedDict):
-    opinion: int | None
-    opinion_of: int | None
-    agreement: float | None
-    trusted: bool
-    role: str
-    bad_share: float | None
-    signals_missing: tuple[int, int]
-
-
-class _Plan(TypedDict):
-    goal: str
-    plan: tuple[str, ...]
-    plan_says: str
 
 
 class StateBuilder:
@@ -74,6 +46,8 @@ class StateBuilder:
         """Return the state of the robot after a tick."""
         runtime, parts = self._runtime, self._parts
         decision, readings, commands = record.decision, record.readings, runtime.handler
+        match, plan, opinion, agreement = decision.match, decision.plan, record.opinion, commands.agreement
+        nearest = None if match is None else match.rla
         metres = runtime.robot.geometry.metres_per_tick
         if self._count % _LATENESS_EVERY == 0:
             self._late_p99_ms = self._late()
@@ -117,9 +91,24 @@ class StateBuilder:
             standing=record.standing,
             lesson_speed=commands.lesson_speed.share,
             way_m=(self._left_ticks * metres, self._right_ticks * metres),
-            **self._nearest(record),
-            **self._critic(record),
-            **_plan(record),
+            nearest=None if nearest is None else nearest.rla_id,
+            nearest_action=None if nearest is None else nearest.action,
+            nearest_image="" if nearest is None else nearest.image,
+            distance=math.inf if match is None else match.distance,
+            radius=self._radius(decision.asks_at) if match is None else match.radius,
+            taught_by="" if nearest is None else nearest.origin.teacher,
+            taught_at="" if nearest is None else parts.journal.stamp_of(nearest.origin.command_id),
+            nearest_value=None if nearest is None else self._withdrawn_at(nearest),
+            opinion=None if opinion is None else opinion.said,
+            opinion_of=None if opinion is None or not opinion.known or opinion.rla is None else opinion.rla.rla_id,
+            agreement=None if agreement is None else agreement.share,
+            trusted=agreement is not None and agreement.trusted,
+            role=commands.updater.critic_state.value,
+            bad_share=commands.updater.bad_share,
+            signals_missing=self._signals_missing(),
+            goal="" if plan is None else plan.goal,
+            plan=() if plan is None else plan.behaviours,
+            plan_says="" if plan is None else plan.says,
         )
 
     def _question(self, record: TickRecord) -> tuple[FeatureDifference, ...]:
@@ -127,34 +116,6 @@ class StateBuilder:
         if decision.asks_at != BASIC or decision.cause not in (DecisionCause.UNKNOWN, DecisionCause.DOUBT):
             return ()
         return basic_question(self._runtime, record).differing
-
-    def _nearest(self, record: TickRecord) -> _Nearest:
-        match = record.decision.match
-        nearest = None if match is None else match.rla
-        return _Nearest(
-            nearest=None if nearest is None else nearest.rla_id,
-            nearest_action=None if nearest is None else nearest.action,
-            nearest_image="" if nearest is None else nearest.image,
-            distance=math.inf if match is None else match.distance,
-            radius=self._radius(record.decision.asks_at) if match is None else match.radius,
-            taught_by="" if nearest is None else nearest.origin.teacher,
-            taught_at="" if nearest is None else self._parts.journal.stamp_of(nearest.origin.command_id),
-            nearest_value=None if nearest is None else self._withdrawn_at(nearest),
-        )
-
-    def _critic(self, record: TickRecord) -> _Critic:
-        commands, opinion = self._runtime.handler, record.opinion
-        agreement = commands.agreement
-        appraisal_rla = None if opinion is None or not opinion.known else opinion.rla
-        return _Critic(
-            opinion=None if opinion is None else opinion.said,
-            opinion_of=None if appraisal_rla is None else appraisal_rla.rla_id,
-            agreement=None if agreement is None else agreement.share,
-            trusted=agreement is not None and agreement.trusted,
-            role=commands.updater.critic_state.value,
-            bad_share=commands.updater.bad_share,
-            signals_missing=self._signals_missing(),
-        )
 
     def _withdrawn_at(self, nearest: Rla) -> float | None:
         if nearest.level != BASIC or nearest.action != ASK:
@@ -211,13 +172,6 @@ def basic_question(runtime: Runtime, record: TickRecord, words: SensorWords = NO
     if record.decision.cause is DecisionCause.DOUBT and match is not None:
         return ask_in_doubt(question, runtime.level.new_obstacle(match, vector), names)
     return question
-
-
-def _plan(record: TickRecord) -> _Plan:
-    plan = record.decision.plan
-    if plan is None:
-        return _Plan(goal="", plan=(), plan_says="")
-    return _Plan(goal=plan.goal, plan=plan.behaviours, plan_says=plan.says)
 
 
 def _latched(record: TickRecord) -> ActiveStop | None:

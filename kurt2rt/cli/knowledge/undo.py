@@ -10,6 +10,7 @@ import typer
 from config.errors import ExitCode
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, change_lines, format_lesson
+from kurt2rt.cli.options import refuse_if
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import say
 from kurt2rt.core.outcome_text import text_of
@@ -85,8 +86,8 @@ def redo(options: _Options) -> None:
 
 
 def _require_one_of(options: _Options) -> None:
-    if options.teacher is not None and options.lesson is not None:
-        raise typer.BadParameter("give --lesson or --teacher, not both")
+    both = options.teacher is not None and options.lesson is not None
+    refuse_if(both, "give one of them, not both", "--lesson, --teacher")
 
 
 def _carry_out(planned: UndoPlan, options: _Options, what: str, become: str, done: str) -> None:

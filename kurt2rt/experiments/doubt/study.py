@@ -18,7 +18,7 @@ from kurt2rt.experiments.doubt.drive import (
 )
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
-from kurt2rt.experiments.study.figures import Estimate, SavedFigure, draw_estimates
+from kurt2rt.experiments.study.figures import Estimate, draw_estimates, saved
 from kurt2rt.experiments.study.intervals import Rate, rate_of
 from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints
@@ -113,10 +113,10 @@ def tell(plan: StudyPlan[DoubtDrives], command: str) -> Told:
     tables = [score_table(each.rows, doubt.threshold) for each in groups if doubt and each.of is DoubtResponse.TELLS]
     collisions = collision_table(groups, plan.about.set_down_after_s)
     counts = ", ".join(f"{each.of.value} {_collisions(each)}" for each in groups)
-    path = plan.results.folder / "doubt.png"
     rates = [(each.of.value, _collisions(each), _rate(each)) for each in groups]
-    draw_estimates([Estimate(of, *rate, f"{count} collisions") for of, count, rate in rates], "in 100 min", path)
-    picture = SavedFigure(path, "Collisions in 100 minutes", "By what doubt does; all drives from the same starts.")
+    figure = draw_estimates([Estimate(of, *rate, f"{count} collisions") for of, count, rate in rates], "in 100 min")
+    caption = "By what doubt does; all drives from the same starts."
+    picture = saved(figure, plan.results.folder / "doubt.png", "Collisions in 100 minutes", caption)
     sentence = f"Collisions in {len(groups[0].rows)} drives without a teacher, by what doubt does: {counts}."
     told = Told([*tables, collisions], sentence, short=collisions)
     title = f"KURT2: doubt in {plan.about.task.name}"

@@ -13,9 +13,8 @@ from kurt2rt.experiments.lockstep.drive_row import label_of
 from kurt2rt.experiments.lockstep.teacher_workload import SAID
 from kurt2rt.experiments.phases.results import MEASURES, PhasesStudy, exams_of, paired
 from kurt2rt.experiments.phases.steps import BRANCHES, PATH, Step
-from kurt2rt.experiments.study.figures import SavedFigure
+from kurt2rt.experiments.study.figures import SavedFigure, saved
 from kurt2rt.experiments.study.intervals import collisions_in_10_min, wilson_interval
-from kurt2rt.platform.save_figure import save_figure
 
 _LOAD_COLOURS = {"lessons": "#1f6fb2", "corrections": "#d1495b", "rewards": "#2e8540", "appraisals": "#b8860b"}
 _TEACHING = (Step.PHASE_2, Step.PHASE_3, Step.PHASE_4, Step.PHASE_5)
@@ -30,38 +29,33 @@ def draw_figures(study: PhasesStudy, folder: Path) -> Iterator[SavedFigure]:
     the task's critic cannot be loaded.
     """
     robots = len(study.plan.seeds)
-    path = folder / "phases.png"
-    _draw_stages(study, PATH, path)
-    yield SavedFigure(path, "Phase by phase", f"{robots} robots; bars are 95 % intervals.")
-    path = folder / "load.png"
-    _draw_load(study, path)
-    yield SavedFigure(
-        path,
+    phase_by_phase = _stages(study, PATH)
+    yield saved(phase_by_phase, folder / "phases.png", "Phase by phase", f"{robots} robots; bars are 95 % intervals.")
+    yield saved(
+        _load(study),
+        folder / "load.png",
         "The teacher's load",
         "What he says in each minute, mean of all robots, along the path of all phases. Phase 5 has no teacher.",
     )
-    path = folder / "agreement.png"
-    _draw_agreement(study, path)
-    yield SavedFigure(
-        path,
+    yield saved(
+        _agreement(study),
+        folder / "agreement.png",
         "Agreement of the critic",
         "With the teacher's signals in phase 4, each compared before it was learnt: median (line) and quartiles (band) "
         "of the robots of which enough was heard. Above the bound the critic is trusted.",
     )
-    path = folder / "branches.png"
-    _draw_stages(study, BRANCHES, path)
-    yield SavedFigure(path, "A corrupted set, and what repairs it", "Each with the same sets; bars are 95 % intervals.")
-    path = folder / "intact.png"
-    _draw_intact(study, path)
-    yield SavedFigure(
-        path,
+    branches, caption = _stages(study, BRANCHES), "Each with the same sets; bars are 95 % intervals."
+    yield saved(branches, folder / "branches.png", "A corrupted set, and what repairs it", caption)
+    yield saved(
+        _intact(study),
+        folder / "intact.png",
         "An intact set, before and after phase 5",
         "One point per robot and world. Above the line there is more of it after phase 5 than before.",
     )
 
 
-def _draw_stages(study: PhasesStudy, names: Sequence[Step], path: Path) -> None:
-    """Draw success and collisions of each stage, a color for each world."""
+def _stages(study: PhasesStudy, names: Sequence[Step]) -> Figure:
+    """Return success and collisions of each stage, a color for each world."""
     figure = Figure(figsize=(11.0, 1.6 + 0.55 * len(names)), layout="constrained")
     success, collisions = figure.subplots(1, 2, sharey=True)
     places = np.arange(len(names))[::-1]
@@ -84,7 +78,7 @@ def _draw_stages(study: PhasesStudy, names: Sequence[Step], path: Path) -> None:
     for axes in (success, collisions):
         axes.grid(alpha=0.25)
     figure.legend(loc="outside lower center", ncols=5, fontsize="small", frameon=False)
-    save_figure(figure, path)
+    return figure
 
 
 def _bar(axes: Axes, at: float, value: float, span: tuple[float, float], colour: str, label: str | None) -> None:
@@ -92,7 +86,7 @@ def _bar(axes: Axes, at: float, value: float, span: tuple[float, float], colour:
     axes.plot([value], [at], "o", color=colour, markersize=6, label=label)
 
 
-def _draw_load(study: PhasesStudy, path: Path) -> None:
+def _load(study: PhasesStudy) -> Figure:
     """Curves of all kinds of what he says, with the borders between phases."""
     figure = Figure(figsize=(11.0, 4.6), layout="constrained")
     axes = figure.subplots()
@@ -124,10 +118,10 @@ def _draw_load(study: PhasesStudy, path: Path) -> None:
     axes.set_ylabel("said in a minute")
     axes.grid(alpha=0.25)
     figure.legend(loc="outside lower center", ncols=4, fontsize="small", frameon=False)
-    save_figure(figure, path)
+    return figure
 
 
-def _draw_agreement(study: PhasesStudy, path: Path) -> None:
+def _agreement(study: PhasesStudy) -> Figure:
     """Median and quartiles against time, with the bound of trust."""
     figure = Figure(figsize=(7.5, 4.4), layout="constrained")
     axes = figure.subplots()
@@ -146,10 +140,10 @@ def _draw_agreement(study: PhasesStudy, path: Path) -> None:
     axes.set_ylabel("agreement")
     axes.grid(alpha=0.25)
     axes.legend(loc="lower right", fontsize="small", frameon=False)
-    save_figure(figure, path)
+    return figure
 
 
-def _draw_intact(study: PhasesStudy, path: Path) -> None:
+def _intact(study: PhasesStudy) -> Figure:
     """Each robot before and after, by each measure but success."""
     pairs = paired(study.stages[Step.PHASE_2], study.stages[Step.INTACT])
     worlds = list(dict.fromkeys(each.world for each in pairs))
@@ -170,4 +164,4 @@ def _draw_intact(study: PhasesStudy, path: Path) -> None:
         axes.grid(alpha=0.25)
     panels[0].set_ylabel("after")
     figure.legend(loc="outside lower center", ncols=5, fontsize="small", frameon=False)
-    save_figure(figure, path)
+    return figure

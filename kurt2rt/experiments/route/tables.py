@@ -6,13 +6,14 @@ from itertools import pairwise
 from pathlib import Path
 
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from kurt2rt.core.task_settings import PaperResult, TaskSettings
 from kurt2rt.experiments.lockstep.drive_row import Place
 from kurt2rt.experiments.lockstep.trails import draw_drive, legend_below, panels_of
 from kurt2rt.experiments.route.route_monitor import LAYERS
 from kurt2rt.experiments.route.study import RouteJob, RouteOutcome, Routes, RouteTasks
-from kurt2rt.experiments.study.figures import SavedFigure
+from kurt2rt.experiments.study.figures import SavedFigure, saved
 from kurt2rt.experiments.study.intervals import Rate, right_rate
 from kurt2rt.experiments.study.report import TO_SEE_LESSONS, spans, tell_with_report
 from kurt2rt.experiments.study.study_plan import StudyPlan, read_groups
@@ -49,10 +50,9 @@ _BESIDE_M = 0.13
 def draw_figures(routes: Sequence[Routes], factory: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
     """Draw each length into the folder and yield it: route-<decisions>.png. Raises OSError."""
     for decisions, outcomes in routes:
-        path = folder / f"route-{decisions}.png"
-        _draw_routes(factory, outcomes, path)
-        yield SavedFigure(
-            path,
+        yield saved(
+            _routes(factory, outcomes),
+            folder / f"route-{decisions}.png",
             f"Routes of {decisions} decisions",
             "Orange: the route of each robot with the number of each decision behind its junction; blue: its drive "
             "without a teacher; red: wrong decisions (triangle: symbols, square: mid level, circle: basic level); "
@@ -72,13 +72,13 @@ def draw_route(factory: SimulationFactory, outcome: RouteOutcome, path: Path) ->
     save_figure(figure, path)
 
 
-def _draw_routes(factory: SimulationFactory, outcomes: Sequence[RouteOutcome], path: Path) -> None:
-    """Draw a panel for each robot: route, decisions and drive. Writes a PNG to `path`. Raises OSError."""
+def _routes(factory: SimulationFactory, outcomes: Sequence[RouteOutcome]) -> Figure:
+    """Return a panel for each robot: route, decisions and drive."""
     figure, panels = panels_of(len(outcomes), _COLUMNS, (4.0, 4.4))
     for axes, outcome in zip(panels, outcomes, strict=True):
         _draw(axes, factory, outcome)
         axes.set_title(_told(outcome), fontsize="small")
-    save_figure(figure, path)
+    return figure
 
 
 def _draw(axes: Axes, factory: SimulationFactory, outcome: RouteOutcome) -> None:

@@ -8,19 +8,18 @@ from typing import Any
 
 import yaml
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from optuna.trial import FrozenTrial
 
+from kurt2rt.experiments.lockstep.trails import panels_of
 from kurt2rt.experiments.search.plan import PRESSES_OF_A_COLLISION, SHIPPED, SearchPlan, effort, exams_of, label_of
 from kurt2rt.experiments.search.settings import Objective, Robots
 from kurt2rt.experiments.search.trials import CheckedSettings, CheckResult, SearchTrials, best_trials, finished
-from kurt2rt.experiments.study.figures import SavedFigure
+from kurt2rt.experiments.study.figures import SavedFigure, saved
 from kurt2rt.experiments.study.intervals import Rate
 from kurt2rt.experiments.study.jobs import ExaminedOutcome
 from kurt2rt.experiments.study.report import Section, spans, tell_with_report
 from kurt2rt.experiments.study.table import Table, Told, of_text, rate_text, table_of
 from kurt2rt.platform.durable_files import write_durably
-from kurt2rt.platform.save_figure import save_figure
 
 _SHOWN = 5
 _DIGITS = 4
@@ -94,21 +93,17 @@ def _difference(difference: Rate, factor: float = 1.0) -> str:
 def _draw_trials(plan: SearchPlan, trials: list[FrozenTrial], path: Path) -> SavedFigure:
     """Draw the scores by number and by each key as a PNG to `path`. Raises OSError."""
     panels = 1 + len(plan.search.space)
-    rows = -(-panels // _COLUMNS)
-    figure = Figure(figsize=(4.4 * _COLUMNS, 3.4 * rows), layout="constrained")
-    axes: list[Axes] = figure.subplots(rows, _COLUMNS, squeeze=False, sharey=True).flatten().tolist()
+    figure, axes = panels_of(panels, _COLUMNS, (4.4, 3.4))
     _draw_order(axes[0], trials)
-    for each, dimension in zip(axes[1:], plan.search.space, strict=False):
+    for each, dimension in zip(axes[1:], plan.search.space, strict=True):
         _draw_scores(each, [trial.params[dimension.key] for trial in trials], trials)
         each.set_xlabel(dimension.key)
         if dimension.log:
             each.set_xscale("log")
-    for unused in axes[panels:]:
-        unused.remove()
-    for first in axes[:panels:_COLUMNS]:
+    for first in axes[::_COLUMNS]:
         first.set_ylabel("score")
-    save_figure(figure, path)
-    return SavedFigure(
+    return saved(
+        figure,
         path,
         "Trials",
         "Each point is a trial, the first one the shipped settings. The score is the share of exams passed, and less "

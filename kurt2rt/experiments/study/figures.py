@@ -21,6 +21,12 @@ class SavedFigure(NamedTuple):
     caption: str
 
 
+def saved(figure: Figure, path: Path, title: str, caption: str) -> SavedFigure:
+    """Write a figure of a report to a PNG file and return it with its texts. Raises OSError."""
+    save_figure(figure, path)
+    return SavedFigure(path, title, caption)
+
+
 class Estimate(NamedTuple):
     """Line of a picture: a name, a value with its 95 % interval, and the text that stands there."""
 
@@ -38,12 +44,11 @@ def draw_passed(groups: Mapping[str, Sequence[DriveRow]], caption: str, path: Pa
         passed, judged = sum(each.passed for each in drives), sum(each.judged for each in drives)
         low, high = wilson_interval(passed, judged) if judged else (0.0, 1.0)
         estimates.append(Estimate(name, passed / max(judged, 1), low, high, of_text(passed, judged)))
-    draw_estimates(estimates, "share of the exams that passed", path)
-    return SavedFigure(path, "Exams without a teacher", caption)
+    return saved(draw_estimates(estimates, "share of the exams that passed"), path, "Exams without a teacher", caption)
 
 
-def draw_estimates(estimates: Sequence[Estimate], unit: str, path: Path) -> None:
-    """Write a PNG with a line for each estimate, the first on top: a dot, its interval and its text. Raises OSError."""
+def draw_estimates(estimates: Sequence[Estimate], unit: str) -> Figure:
+    """Return a figure with a line for each estimate, the first on top: a dot, its interval and its text."""
     figure = Figure(figsize=(8.0, 1.0 + 0.42 * len(estimates)), layout="constrained")
     axes = figure.subplots()
     for at, each in enumerate(estimates):
@@ -56,4 +61,4 @@ def draw_estimates(estimates: Sequence[Estimate], unit: str, path: Path) -> None
     axes.set_xlabel(f"{unit}; bars: 95 % interval")
     axes.grid(axis="x", alpha=0.25)
     axes.spines[["top", "right"]].set_visible(False)
-    save_figure(figure, path)
+    return figure
