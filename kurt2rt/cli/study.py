@@ -1,6 +1,5 @@
 """`kurt2rt study ...`: measurements of many robots."""
 
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -430,12 +429,12 @@ def worker(options: _Worker) -> None:
         from kurt2rt.experiments.study.cluster import make_cluster_file, scheduler_command
 
         make_cluster_file(options.new, options.scheduler)
-        print(f"cluster  {options.new}: copy it to each machine, and keep it to yourself", file=sys.stdout)
-        print(f"scheduler  {scheduler_command(options.new, options.scheduler)}", file=sys.stdout)
+        typer.echo(f"cluster  {options.new}: copy it to each machine, and keep it to yourself")
+        typer.echo(f"scheduler  {scheduler_command(options.new, options.scheduler)}")
     elif options.cluster is not None and options.new is None:
         from kurt2rt.experiments.study.cluster import serve
 
-        anyio.run(serve, options.cluster, lambda address: print(f"worker  {address}", flush=True, file=sys.stdout))
+        anyio.run(serve, options.cluster, lambda address: typer.echo(f"worker  {address}"))
     else:
         raise typer.BadParameter("give the file of a cluster, or make one", param_hint="--cluster, --new")
 

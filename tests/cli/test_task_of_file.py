@@ -15,6 +15,7 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.cli.helpers import CommandLine
 from tests.cli.test_bad_input import changed
 from tests.experiments.helpers import ROBOT
+from tests.knowledge.lessons import begun
 from tests.plugin_packages import install
 
 FLEEING = binding_for(ROBOT, load_task("fleeing"))
@@ -89,6 +90,15 @@ def test_own_tasks_file_is_used_with_the_settings_given(kurt2rt: CommandLine, tm
         "theirs.knowledge",
     )
     assert said.out.startswith("task sneaking")
+
+
+def test_graphml_of_an_unknown_task_is_written(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    begun(tmp_path / "mine.knowledge")  # of a task that is not installed
+    words = ("knowledge", "graph", "mine.knowledge", "--out")
+    said = kurt2rt(*words, "net.graphml")
+    assert (said.exit_code, said.err) == (0, "")
+    assert (tmp_path / "net.graphml").is_file()
+    assert "neither shipped nor installed" in kurt2rt.refused(*words, "net.svg")
 
 
 @pytest.mark.parametrize("named", ["evil:TASK", "./evil.yaml", "evil"])

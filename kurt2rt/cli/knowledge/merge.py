@@ -36,8 +36,5 @@ def merge(
         return
     would = "would be " if dry_run else ""
     say(f"{file}: {would}brought in: {merged.lessons} lessons, {merged.new_rlas} RLAs of them new")
-    say("nothing was changed: --dry-run" if dry_run else f"to undo that: {_undo(file, merged.merge_id)}")
-
-
-def _undo(file: Path, merge_id: str) -> str:
-    return f"kurt2rt knowledge undo {file} --lesson {merge_id}"
+    undo = f"to undo that: kurt2rt knowledge undo {file} --lesson {merged.merge_id}"
+    say("nothing was changed: --dry-run" if dry_run else undo)

@@ -45,14 +45,13 @@ def show(
         kurt2rt knowledge show var/wall_following.knowledge --rla 3
     """
     with Journal.read_only(file) as journal:
+        console = console_of()
         if as_json:
             print_json(_as_data(journal, rla, limit))
-            return
-        console = console_of()
-        if rla is not None:
+        elif rla is None:
+            print_whole(console, render_knowledge(journal, limit, wide=console.width >= WIDE))
+        else:
             print_whole(console, render_rla(journal, rla, limit))
-            return
-        print_whole(console, render_knowledge(journal, limit, wide=console.width >= WIDE))
 
 
 def lessons(
