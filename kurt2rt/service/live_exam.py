@@ -1,5 +1,6 @@
 """Exam of a running robot's knowledge, driven by another process at a lower priority."""
 
+import hashlib
 import json
 import subprocess
 import threading
@@ -11,6 +12,7 @@ from typing import Self
 
 from kurt2rt.channel.protocol.simulation import EXAM, NO_EXAM, ExamStatus
 from kurt2rt.core.message_fields import WireError
+from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.durable_files import write_durably
@@ -19,9 +21,17 @@ Command = Callable[[Path, Path], Sequence[str]]
 """Returns the words that start an exam of a knowledge file, with the path of its picture."""
 
 
-def verdict_file(knowledge: Path) -> Path:
-    """Return the file of the newest verdict on a knowledge file, which keeps it if renamed. Raises OSError."""
-    return knowledge.with_name("exams") / f"verdict-{knowledge.stat().st_ino}.json"
+def verdict_file(knowledge: Path) -> Path | None:
+    """Return the file of the newest verdict on knowledge, by its first lesson: a copy has it, too, a new file does not.
+
+    None for a file without a lesson. Raises KnowledgeError.
+    """
+    with Journal.in_writer_process(knowledge) as journal:
+        first = next(journal.iter_entries(), None)
+    if first is None:
+        return None
+    name = hashlib.sha256(first.event.origin.command_id.encode()).hexdigest()[:16]
+    return knowledge.with_name("exams") / f"verdict-{name}.json"
 
 
 class LiveExam:
@@ -47,10 +57,11 @@ class LiveExam:
         """Status, replaced by the thread that reads."""
         self.picture: Path | None = None
         """Picture of the newest exam, drawn once it has a verdict; None before the first exam."""
-        with suppress(OSError, WireError, ValueError):
+        with suppress(OSError, KnowledgeError, WireError, ValueError):
             verdict = verdict_file(taught)
-            self.status = EXAM.read(json.loads(verdict.read_text(encoding="utf-8")))
-            self.picture = verdict.with_name(self.status.picture)
+            if verdict is not None:
+                self.status = EXAM.read(json.loads(verdict.read_text(encoding="utf-8")))
+                self.picture = verdict.with_name(self.status.picture)
 
     def begin(self, knowledge: Path, picture: Path) -> None:
         """Start an exam of a copy of the knowledge, deleted at the end; `picture` is the file to draw.
@@ -118,6 +129,7 @@ class LiveExam:
             self.status = verdict
         else:
             verdict = replace(verdict, picture=picture.name if picture.is_file() else "")
-            with suppress(OSError):  # it is told all the same
-                write_durably(verdict_file(self._taught), json.dumps(EXAM.plain_of(verdict)))
+            with suppress(OSError, KnowledgeError):  # it is told all the same
+                if (kept := verdict_file(self._taught)) is not None:
+                    write_durably(kept, json.dumps(EXAM.plain_of(verdict)))
             self.status = verdict

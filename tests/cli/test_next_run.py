@@ -211,13 +211,14 @@ async def test_next_run_keeps_teacher_lessons_and_verdict(tmp_path: Path) -> Non
     knowledge.parent.mkdir()
     open_knowledge(knowledge, ROBOT, TASK).close()
     passed = ExamStatus(False, 1.0, "Passed in 3 of 3 worlds.")
-    write_durably(verdict_file(knowledge), json.dumps(EXAM.plain_of(passed)))
     with running("run", "--port", "0", folder=tmp_path) as robot:
         async with teacher_of(robot, tmp_path) as client:
             asks = await state_where(client, b"", cause="unknown", teacher="local")
             assert (await client.send(Teach, action="forward", decision_tick=asks.tick)).accepted
             first = await state_where(client, b"", lessons=1, unsaved=0)
-            assert await client.exam() == passed
+            kept_verdict = verdict_file(knowledge)
+            assert kept_verdict is not None
+            write_durably(kept_verdict, json.dumps(EXAM.plain_of(passed)))
             answer = await client.send(NextRunRequest, world="b", fresh=False, task=None)
             assert answer.accepted, answer.text
             moved = await state_where(client, first.boot, teacher="local", lessons=1)
@@ -247,5 +248,5 @@ async def test_next_run_keeps_teacher_lessons_and_verdict(tmp_path: Path) -> Non
         assert len(list(kept.entries())) == 1
     with Journal.read_only(knowledge) as new:
         assert len(list(new.entries())) == 1
-    assert verdict_file(knowledge.with_name("wall_following.knowledge.1")).is_file()
+    assert verdict_file(knowledge.with_name("wall_following.knowledge.1")) == kept_verdict
     assert len(names_in(tmp_path / "var" / "runs")) == 4

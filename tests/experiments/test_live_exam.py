@@ -10,13 +10,16 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.robot_settings import load_robot
-from kurt2rt.channel.protocol.simulation import EXAM, ExamStatus
+from kurt2rt.channel.protocol.simulation import EXAM, NO_EXAM, ExamStatus
 from kurt2rt.cli import exam_process
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.drive_row import NOT_JUDGED_BECAUSE
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.service.live_exam import LiveExam
+from tests.knowledge.lessons import BINDING, STAMP, created
 from tests.knowledge.refusals import refused
 from tests.patience import PATIENCE_S
 
@@ -45,7 +48,8 @@ def ended(exam: LiveExam) -> ExamStatus:
 def test_live_exam_returns_verdict_and_picture(copy: Path, tmp_path: Path) -> None:
     drawn = "open(sys.argv[1], 'wb').close()"
     taught, picture = tmp_path / "walls.knowledge", tmp_path / "exams" / "exam.png"
-    taught.touch()
+    with Journal.open(taught, BINDING) as journal:
+        journal.append([JournalEntry(created(1), STAMP)])
     picture.parent.mkdir()
     with saying("a word of some library", json.dumps(EXAM.plain_of(OVER)), taught=taught, after=drawn) as exam:
         exam.begin(copy, picture)
@@ -54,6 +58,10 @@ def test_live_exam_returns_verdict_and_picture(copy: Path, tmp_path: Path) -> No
     assert not copy.exists()
     again = saying(taught=taught)
     assert (again.status, again.picture) == (told, picture), "the next run on that file tells it again"
+    taught.rename(tmp_path / "kept.knowledge")
+    Journal.open(taught, BINDING).close()
+    assert saying(taught=taught).status == NO_EXAM, "of a new file at the old place"
+    assert saying(taught=tmp_path / "kept.knowledge").status == told
 
 
 def test_an_exam_is_over_only_with_its_picture(copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
