@@ -15,13 +15,13 @@ from tests.forked_program import ForkedProcess, has_fork_server
 class ForkedRobot(ForkedProcess):
     """Stand-in for the Popen of a RobotProcess: a pipe to its standard input, its output in a file."""
 
-    def __init__(self, words: Sequence[str], folder: Path, log: Path) -> None:
+    def __init__(self, words: Sequence[str], folder: Path, log: Path, environment: dict[str, str]) -> None:
         keyboard, stdin = os.pipe()
         self.stdin: IO[bytes] = os.fdopen(stdin, "wb")
         with log.open("wb") as output:
             streams = (keyboard, output.fileno(), output.fileno())
             try:
-                super().__init__(robot_process.PROGRAM, words, folder, os.environ, streams)
+                super().__init__(robot_process.PROGRAM, words, folder, environment, streams)
             finally:
                 os.close(keyboard)
 
@@ -29,8 +29,8 @@ class ForkedRobot(ForkedProcess):
 def fork_robots(monkeypatch: pytest.MonkeyPatch) -> None:
     """Fork each RobotProcess that is started from now on, if the session has a fork server."""
 
-    def started(words: Sequence[str], folder: Path, log: Path) -> "Popen[bytes]":
-        return cast("Popen[bytes]", ForkedRobot(words, folder, log))
+    def started(words: Sequence[str], folder: Path, log: Path, environment: dict[str, str]) -> "Popen[bytes]":
+        return cast("Popen[bytes]", ForkedRobot(words, folder, log, environment))
 
     if has_fork_server():
         monkeypatch.setattr(robot_process, "_started", started)

@@ -1,5 +1,6 @@
 """A simulated robot in a process of its own, for scripts and notebooks that need one for a while."""
 
+import os
 import shutil
 import signal
 import subprocess
@@ -85,6 +86,7 @@ class RobotProcess:
             ),
             self._folder,
             self.log,
+            {**os.environ, "COLUMNS": "10000"},  # so that the last line is a whole message
         )
         try:
             self._wait_for_pairing(self._process)
@@ -145,7 +147,7 @@ def _free_udp_port() -> int:
         return port
 
 
-def _started(words: Sequence[str], folder: Path, log: Path) -> "subprocess.Popen[bytes]":
+def _started(words: Sequence[str], folder: Path, log: Path, environment: dict[str, str]) -> "subprocess.Popen[bytes]":
     with log.open("wb") as output:
         # In a session of its own: Ctrl-C and Jupyter's Interrupt end a call in the notebook, and not the robot.
         return subprocess.Popen(
@@ -154,5 +156,6 @@ def _started(words: Sequence[str], folder: Path, log: Path) -> "subprocess.Popen
             stdout=output,
             stderr=subprocess.STDOUT,
             cwd=folder,
+            env=environment,
             start_new_session=True,
         )
