@@ -22,7 +22,7 @@ from kurt2rt.experiments.study.figures import SavedFigure, saved
 from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of, wilson_interval
 from kurt2rt.experiments.study.jobs import SEED, JobParts, Outcome, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash
-from kurt2rt.experiments.study.report import spans, tell_with_report
+from kurt2rt.experiments.study.report import tell_with_report
 from kurt2rt.experiments.study.study_plan import BusWitnessJob, StudyPlan, group_by
 from kurt2rt.experiments.study.table import (
     Column,
@@ -414,7 +414,8 @@ def draw_together(jobs: Sequence[BlockJob], drives: Sequence[DriveRow]) -> Saved
             draw_trail(axes, drive.trail, "", colour=TRAIL if _is_clean(drive) else ASKED)
             draw_marks(axes, drive.asked_at, drive.collided_at)
             draw_robot(axes, drive.trail[0], jobs[0].robot.geometry.outline_m, START)
-        axes.set_title(f"World {label_of(world)}: run {spans(sorted(each.seed for each in rows))}")
+        numbers = ", ".join(str(each.seed) for each in rows)
+        axes.set_title(f"World {label_of(world)}: run{'s' if len(rows) > 1 else ''} {numbers}")
     stamp = f"{of_text(clean, len(drives))}, at least {wilson_interval(clean, len(drives))[0]:.0%}"
     colour = START if clean == len(drives) else ASKED
     box = {"boxstyle": "round,pad=0.5", "facecolor": "white", "edgecolor": colour, "linewidth": 3.0}
