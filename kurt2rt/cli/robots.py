@@ -146,6 +146,8 @@ def run_robots(
                     open_file(folder / "robots.html")
                 told = links
             live.update(Group(*_lines(robots, reports, console.width)), refresh=True)
+    if not console.is_terminal:
+        console.print()  # a pipe gets the last table without an end of its line
     files = f"{folder}/robot-*/*.knowledge"
     print_lines(console, f"all robots stand; to hand in: {files}", f"to examine all: kurt2rt exam {files}", whole=True)
 
