@@ -4,7 +4,7 @@ import math
 from threading import RLock
 
 from hal.bus import BusError
-from hal.guard_limits import LONGEST_SLEW_CYCLES, REASONS, SLEW_LIMIT, bounded, limits_of, slewed
+from hal.guard_limits import REASONS, limited, limits_of
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import RobotSettings
@@ -132,13 +132,8 @@ class Guard:
 
     def _limit(self, wanted: tuple[float, float], bumpers: int, now_s: float) -> tuple[GuardReason, ...]:
         """Move the set points toward the wanted speeds within the limits; return the limits that were met."""
-        limits, present = self._limits, (self._left_m_s, self._right_m_s)
-        left_m_s, right_m_s, from_left_m_s, from_right_m_s, met = bounded(wanted, present, bumpers, limits)
-        elapsed_s = min(now_s - self._driven_at_s, LONGEST_SLEW_CYCLES * limits.cycle_s)
-        self._left_m_s = slewed(from_left_m_s, left_m_s, elapsed_s, limits)
-        self._right_m_s = slewed(from_right_m_s, right_m_s, elapsed_s, limits)
-        if self._left_m_s != left_m_s or self._right_m_s != right_m_s:
-            met |= SLEW_LIMIT
+        present, elapsed_s = (self._left_m_s, self._right_m_s), now_s - self._driven_at_s
+        self._left_m_s, self._right_m_s, met = limited(wanted, present, bumpers, elapsed_s, self._limits)
         return REASONS[met]
 
     def _latch(self, reason: GuardReason) -> None:

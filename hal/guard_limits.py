@@ -16,7 +16,7 @@ _REASONS = {
 REASONS = tuple(tuple(reason for bit, reason in _REASONS.items() if bits & bit) for bits in range(2 * SLEW_LIMIT))
 """Reasons of the guard, by the bits of the limits that were met."""
 
-LONGEST_SLEW_CYCLES = 2
+_LONGEST_SLEW_CYCLES = 2
 """Most cycles in which set points move at once: a late tick must not turn into a jump."""
 
 
@@ -49,15 +49,29 @@ def limits_of(robot: RobotSettings) -> GuardLimits:
     )
 
 
-def bounded(
-    wanted: tuple[float, float], present: tuple[float, float], bumpers: int, limits: GuardLimits
-) -> tuple[float, float, float, float, int]:
-    """Return where the set points may go, from where they start, and the bits of the limits that were met.
+def slewed(from_m_s: float, to_m_s: float, elapsed_s: float, limits: GuardLimits) -> float:
+    """Return the set point of one side after `elapsed_s` on its way between two speeds in m/s."""
+    if to_m_s == from_m_s or to_m_s == 0.0:
+        return to_m_s  # a stop is not slewed: the controller brakes by itself
+    if from_m_s * to_m_s < 0.0:
+        to_m_s = 0.0  # a wheel comes to rest before it turns the other way
+    speeds_up = abs(to_m_s) > abs(from_m_s)
+    step_m_s = (limits.acceleration_m_s2 if speeds_up else limits.braking_m_s2) * elapsed_s
+    if to_m_s > from_m_s:
+        return min(to_m_s, from_m_s + step_m_s)
+    return max(to_m_s, from_m_s - step_m_s)
+
+
+def limited(
+    wanted: tuple[float, float], present: tuple[float, float], bumpers: int, elapsed_s: float, limits: GuardLimits
+) -> tuple[float, float, int]:
+    """Return the set points of left and right side in m/s, and the bits of the limits that were met.
 
     Args:
         wanted: speeds of left and right side in m/s.
         present: set points of both sides in m/s.
         bumpers: bits of the pressed bumpers.
+        elapsed_s: time since the present set points were told.
         limits: of this robot.
     """
     left_m_s, right_m_s = wanted
@@ -80,17 +94,9 @@ def bounded(
             met |= REAR_BUMPER
         left_m_s, right_m_s = max(left_m_s, 0.0), max(right_m_s, 0.0)
         from_left_m_s, from_right_m_s = max(from_left_m_s, 0.0), max(from_right_m_s, 0.0)
-    return left_m_s, right_m_s, from_left_m_s, from_right_m_s, met
-
-
-def slewed(from_m_s: float, to_m_s: float, elapsed_s: float, limits: GuardLimits) -> float:
-    """Return the set point of one side after `elapsed_s` on its way between two speeds in m/s."""
-    if to_m_s == from_m_s or to_m_s == 0.0:
-        return to_m_s  # a stop is not slewed: the controller brakes by itself
-    if from_m_s * to_m_s < 0.0:
-        to_m_s = 0.0  # a wheel comes to rest before it turns the other way
-    speeds_up = abs(to_m_s) > abs(from_m_s)
-    step_m_s = (limits.acceleration_m_s2 if speeds_up else limits.braking_m_s2) * elapsed_s
-    if to_m_s > from_m_s:
-        return min(to_m_s, from_m_s + step_m_s)
-    return max(to_m_s, from_m_s - step_m_s)
+    elapsed_s = min(elapsed_s, _LONGEST_SLEW_CYCLES * limits.cycle_s)
+    to_left_m_s = slewed(from_left_m_s, left_m_s, elapsed_s, limits)
+    to_right_m_s = slewed(from_right_m_s, right_m_s, elapsed_s, limits)
+    if to_left_m_s != left_m_s or to_right_m_s != right_m_s:
+        met |= SLEW_LIMIT
+    return to_left_m_s, to_right_m_s, met

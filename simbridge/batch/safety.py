@@ -7,7 +7,7 @@ within its band (tests/simbridge/batch/test_laws.py).
 
 import math
 
-from hal.guard_limits import LONGEST_SLEW_CYCLES, SLEW_LIMIT, GuardLimits, bounded, slewed
+from hal.guard_limits import GuardLimits, limited, slewed
 from hal.sensor_signs import (
     LOOK_TICKS,
     Beam,
@@ -25,8 +25,7 @@ from simbridge.batch.record import Robot
 _ROUNDING = 1e-6
 """Set points are truncated to whole cm/s beyond this (hal.control)."""
 
-_bounded = compiled(bounded)
-_slewed = compiled(slewed)
+_limited = compiled(limited, slewed)
 _forget = compiled(forget_contradictions)
 _compare = compiled(compare_with_neighbours, widen, obstacle_motion_m)
 _update_signs = compiled(update_signs, widen, forget_contradictions, compare_with_neighbours=_compare)
@@ -82,14 +81,8 @@ def forget_all_contradictions(robot: Robot) -> None:
 @compiled
 def drive_guarded(robot: Robot, wanted: tuple[float, float], now_s: float, limits: GuardLimits) -> None:
     """Move the set points of a robot toward wanted speeds in m/s within the guard's limits, and send CONTROL."""
-    present = robot.guarded_left_m_s, robot.guarded_right_m_s
-    to_left_m_s, to_right_m_s, from_left_m_s, from_right_m_s, met = _bounded(wanted, present, robot.bumpers, limits)
-    elapsed_s = min(now_s - robot.driven_at_s, LONGEST_SLEW_CYCLES * limits.cycle_s)
-    left_m_s = _slewed(from_left_m_s, to_left_m_s, elapsed_s, limits)
-    right_m_s = _slewed(from_right_m_s, to_right_m_s, elapsed_s, limits)
-    if left_m_s != to_left_m_s or right_m_s != to_right_m_s:
-        met |= SLEW_LIMIT
-    robot.limits = met
+    present, elapsed_s = (robot.guarded_left_m_s, robot.guarded_right_m_s), now_s - robot.driven_at_s
+    left_m_s, right_m_s, robot.limits = _limited(wanted, present, robot.bumpers, elapsed_s, limits)
     robot.guarded_left_m_s, robot.guarded_right_m_s = left_m_s, right_m_s
     robot.driven_at_s = now_s
     left, right = left_m_s * 100.0, right_m_s * 100.0

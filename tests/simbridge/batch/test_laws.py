@@ -9,7 +9,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.guard_limits import bounded, limits_of, slewed
+from hal.guard_limits import limited, limits_of, slewed
 from hal.robot import SensorReadings, WheelSpeeds
 from hal.sensor_watch import SensorWatch
 from hal.wheel_watch import WheelWatch
@@ -26,7 +26,7 @@ from simbridge.robot.wheels import Wheels
 from simbridge.simulated_robot import SimulatedKurt2
 from tests.simbridge.batch.both_ways import FACTORY, ROBOT
 
-_bounded, _slewed = compiled(bounded), compiled(slewed)
+_limited = compiled(limited, slewed)
 
 
 def _standing_in(world: str) -> tuple[SimulatedKurt2, Any, World]:
@@ -83,9 +83,8 @@ def test_compiled_limits_round_as_those_of_the_guard(
     left_m_s: float, right_m_s: float, present_m_s: float, bumpers: int, elapsed_s: float
 ) -> None:
     limits = limits_of(ROBOT)
-    asked = (left_m_s, right_m_s), (present_m_s, 0.0), bumpers, limits
-    assert _bounded(*asked) == bounded(*asked)
-    assert _slewed(present_m_s, left_m_s, elapsed_s, limits) == slewed(present_m_s, left_m_s, elapsed_s, limits)
+    asked = (left_m_s, right_m_s), (present_m_s, 0.0), bumpers, elapsed_s, limits
+    assert _limited(*asked) == limited(*asked)
 
 
 @given(seed=st.integers(0, 2**32 - 1), quiet=st.integers(0, 17))
