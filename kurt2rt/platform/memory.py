@@ -11,6 +11,7 @@ _LARGE_BYTES = 128 * 1024
 _MADV_COLLAPSE = 25
 """MADV_COLLAPSE of Linux 6.1 and newer."""
 _HUGE_BYTES = 2 * 1024 * 1024
+_SMAPS = Path("/proc/self/smaps")
 _MAPPING = re.compile(r"^(\w+)-(\w+) rw-p \w+ 00:00 0 +(?:\[heap\])?\nSize: +(\d+) kB\n(?:.*\n)*?Rss: +(\d+) kB", re.M)
 """Anonymous memory of this process in /proc/self/smaps: begin, end, size, and what of it is there."""
 
@@ -29,13 +30,17 @@ def pin_mmap_threshold() -> None:
 def use_huge_pages() -> int:
     """Move memory that is in use to pages of 2 MB, as far as Linux can; return the bytes that lie on them now.
 
-    After each wait of 10 ms a tick has to look up most of its addresses again. With fewer pages it takes a quarter
-    less time. Before the first tick only, because it takes tens of milliseconds. No-op before Linux 6.1.
+    After each wait of 10 ms a tick has to look up most of its addresses again. With fewer pages it takes a tenth less
+    time. Before the first tick only, because it takes some 0.1 s. No-op before Linux 6.1, and where /proc is hidden.
     """
+    try:
+        mappings = _MAPPING.findall(_SMAPS.read_text(encoding="utf-8"))
+    except OSError:
+        return 0
     madvise = ctypes.CDLL(None).madvise
     madvise.argtypes = (ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int)
     huge = 0
-    for begin, end, size, used in _MAPPING.findall(Path("/proc/self/smaps").read_text(encoding="utf-8")):
+    for begin, end, size, used in mappings:
         # Half empty ones, such as stacks, would take far more memory than now.
         if 2 * int(used) < int(size):
             continue

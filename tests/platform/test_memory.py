@@ -2,6 +2,11 @@
 
 import subprocess
 import sys
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.platform import memory
 
 _RESIDENT = """
 import os
@@ -50,3 +55,8 @@ def test_use_huge_pages_moves_what_is_there_and_takes_no_more() -> None:
     assert int(claimed_kb) <= int(huge_kb)  # 0 before Linux 6.1
     assert float(grown_mb) < 8.0
     assert unchanged == "True"
+
+
+def test_use_huge_pages_does_without_proc(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(memory, "_SMAPS", tmp_path / "hidden")
+    assert memory.use_huge_pages() == 0
