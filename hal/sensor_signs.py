@@ -122,11 +122,11 @@ def sensor_limits(robot: RobotSettings) -> SensorLimits:
 
 # Places of a sensor's counters. A band is its lowest reading, and its highest in the next place.
 _BAND, _QUIET, _BEFORE, _AFTER = 0, 2, 4, 6
-_DRIVEN, STILL_FROM, _LOW_TICKS, _HIGH_TICKS, _AGREED_TICKS, OUT_TICKS, _PASSES, _CHANGED, SIGNS = range(8, 17)
+_DRIVEN, _STILL_FROM, _LOW_TICKS, _HIGH_TICKS, _AGREED_TICKS, _OUT_TICKS, _PASSES, _CHANGED, SIGNS = range(8, 17)
 """SIGNS: number of counters."""
-UNSEEN = -1000
+_UNSEEN = -1000
 """Reading of the bands before the first one."""
-NO_SIGNS = (UNSEEN,) * 4 + (0,) * (SIGNS - 4)
+NO_SIGNS = (_UNSEEN,) * 4 + (0,) * (SIGNS - 4)
 """Counters of a sensor that was not looked at yet."""
 
 
@@ -217,11 +217,11 @@ def update_signs(
     drove = driven - signs[_DRIVEN]
     signs[_DRIVEN] = driven
     in_range = limits.lowest <= value <= limits.highest
-    signs[OUT_TICKS] = 0 if in_range else min(signs[OUT_TICKS] + LOOK_TICKS, RANGE_TICKS)
+    signs[_OUT_TICKS] = 0 if in_range else min(signs[_OUT_TICKS] + LOOK_TICKS, RANGE_TICKS)
     widen(signs, _BAND, value)
     if signs[_BAND + 1] - signs[_BAND] > STUCK_BAND:
         signs[_BAND] = signs[_BAND + 1] = value
-        signs[STILL_FROM] = driven
+        signs[_STILL_FROM] = driven
     widen(signs, _QUIET, value)
     if signs[_QUIET + 1] - signs[_QUIET] > QUIET_COUNTS + QUIET_RATIO * signs[_QUIET + 1]:
         # It has changed by more than noise.
@@ -232,8 +232,8 @@ def update_signs(
         signs[_CHANGED] = 1
     elif drove and has_witnesses:
         compare_with_neighbours(signs, way_m, readings, drove, motion, beam, limits)
-    still = driven - signs[STILL_FROM] >= limits.stuck_ticks
-    return signs[_LOW_TICKS] > 0 or signs[_HIGH_TICKS] > 0 or signs[OUT_TICKS] > 0 or still
+    still = driven - signs[_STILL_FROM] >= limits.stuck_ticks
+    return signs[_LOW_TICKS] > 0 or signs[_HIGH_TICKS] > 0 or signs[_OUT_TICKS] > 0 or still
 
 
 _FAULTS = (None, SensorFault.OUT_OF_RANGE, SensorFault.STUCK, SensorFault.SEES_NOTHING, SensorFault.SEES_A_PHANTOM)
@@ -242,9 +242,9 @@ _FAULTS = (None, SensorFault.OUT_OF_RANGE, SensorFault.STUCK, SensorFault.SEES_N
 
 def fault_code(signs: MutableSequence[int], driven: int, limits: SensorLimits) -> int:
     """Return the number of the sign that a sensor is broken, 0 without one. `driven`: ticks of driving."""
-    if signs[OUT_TICKS] >= RANGE_TICKS:
+    if signs[_OUT_TICKS] >= RANGE_TICKS:
         return 1
-    if driven - signs[STILL_FROM] >= limits.stuck_ticks:
+    if driven - signs[_STILL_FROM] >= limits.stuck_ticks:
         return 2
     before, after = signs[_BEFORE + 1] - signs[_BEFORE], signs[_AFTER + 1] - signs[_AFTER]
     both_change = (
@@ -278,12 +278,12 @@ class SensorSigns:
     @property
     def still_from(self) -> int:
         """Ticks that the robot had driven when the reading last left its narrow band."""
-        return self._signs[STILL_FROM]
+        return self._signs[_STILL_FROM]
 
     @property
     def out_of_range(self) -> bool:
         """Return whether no working sensor gives the newest reading."""
-        return self._signs[OUT_TICKS] > 0
+        return self._signs[_OUT_TICKS] > 0
 
     @property
     def changed(self) -> bool:
@@ -305,7 +305,7 @@ class SensorSigns:
     def restart(self, driven: int) -> None:
         """Forget all signs; `driven`: ticks that the robot has driven."""
         self._signs, self._way_m = list(NO_SIGNS), [0.0, 0.0]
-        self._signs[_DRIVEN] = self._signs[STILL_FROM] = driven
+        self._signs[_DRIVEN] = self._signs[_STILL_FROM] = driven
         self.suspect = False
         """Whether `fault` may find a sign; it spares a call in most ticks."""
 
