@@ -23,6 +23,7 @@ from kurt2rt.channel.protocol.health import (
     SensorAges,
     TickLateness,
 )
+from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.platform.durable_files import free_bytes
@@ -129,6 +130,7 @@ class HealthMonitor:
         punctuality = self._punctuality(snapshot)
         disks, machine = self._disks.spaces(), self._machine.poll()
         last_write_s, readings = snapshot.last_write_s, snapshot.readings
+        rlas = [each for each in snapshot.active if each.level == BASIC]
         return HealthReport(
             version=self._version,
             boot=self._boot,
@@ -139,8 +141,8 @@ class HealthMonitor:
             uptime_s=snapshot.now_s - self._started_s,
             tick=snapshot.tick,
             doing=snapshot.doing,
-            rlas=snapshot.rlas,
-            actions=snapshot.actions,
+            rlas=len(rlas),
+            actions=len({each.action for each in rlas if not each.is_withdrawn}),
             lessons=snapshot.lessons,
             punctuality=punctuality,
             ages=SensorAges(

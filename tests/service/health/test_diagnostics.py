@@ -31,8 +31,7 @@ CALM = Snapshot(
     errors={},
     ticks=100,
     missed_ticks=0,
-    rlas=0,
-    actions=0,
+    active=(),
     lessons=0,
     doing="stands and asks",
 )
