@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from behaviors.action_groups import usual_speeds
-from hal.robot_settings import load_robot, load_robot_of
+from hal.robot_settings import load_robot_of
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile
 from kurt2rt.cli.options import RobotName, TaskOfTheFile, refuse_if, task_option
@@ -106,8 +106,8 @@ def graph(
         kurt2rt knowledge graph var/streets.knowledge --level mid --out net.graphml
     """
     # Late import: networkx is in the extra `simulation`, and every command is loaded where --help is said.
-    from kurt2rt.knowledge.graph.graph import FORMATS, GRAPHML, drop_rare_edges, read_network
-    from kurt2rt.runs.explain.network_picture import write_network
+    from kurt2rt.knowledge.graph.graph import FORMATS, GRAPHML, drop_rare_edges, read_network, write_graphml
+    from kurt2rt.runs.explain.network_picture import draw_network
 
     refuse_if(out.suffix not in FORMATS, f"{out.name}: give a file that ends with {', '.join(FORMATS)}", "--out")
     with Journal.read_only(file) as journal:
@@ -115,10 +115,10 @@ def graph(
     shown = drop_rare_edges(whole, at_least)
     what = " of ".join(part for part in (f"{len(shown)} RLAs", behaviour) if part)
     title = f"{printable(file.stem)}, level {level}: {what}; numbers: what followed, in % (from {at_least:g} %)"
-    if out.suffix == GRAPHML:  # draws neither robot nor actions, so the task need not be known here
-        write_network(shown, title, out, load_robot(), {})
+    if out.suffix == GRAPHML:  # shows neither robot nor actions, so the task need not be known here
+        write_graphml(shown, title, out)
     else:
         name = task_of_file(file, task_name)
-        write_network(shown, title, out, load_robot_of(robot_name, name), usual_speeds(load_task(name).repertoire))
+        draw_network(shown, title, out, load_robot_of(robot_name, name), usual_speeds(load_task(name).repertoire))
     edges = f"{shown.number_of_edges()} of {whole.number_of_edges()} edges"
     say(f"network  {out}: {len(shown)} of {len(whole)} RLAs, {edges}")

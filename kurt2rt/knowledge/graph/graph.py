@@ -4,6 +4,7 @@ Nodes are RLAs, edges their successors, with percentages.
 """
 
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import NoReturn, TypeAlias
 
 import networkx as nx
@@ -85,6 +86,13 @@ def drop_rare_edges(network: RlaNetwork, at_least_percent: float) -> RlaNetwork:
     )
     kept.add_edges_from(edges)
     return kept
+
+
+def write_graphml(network: RlaNetwork, title: str, path: Path) -> None:
+    """Write the network for other programs; make the folder. Raises OSError."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    network.graph["title"] = title
+    nx.write_graphml(network, path)
 
 
 def _add_edges(

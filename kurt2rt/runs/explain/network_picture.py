@@ -4,14 +4,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import networkx as nx
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
-from kurt2rt.knowledge.graph.graph import GRAPHML, RlaNetwork
+from kurt2rt.knowledge.graph.graph import RlaNetwork
 from kurt2rt.knowledge.graph.layout import Place, place_groups, place_known, span
 from kurt2rt.platform.save_figure import save_figure
 from kurt2rt.runs.explain.colours import INK, PALE_INK, colours_of
@@ -26,19 +25,14 @@ _LABELLED_PERCENT = 50.0
 """Rarer edges have no label: with 130 RLAs the labels would cover each other."""
 
 
-def write_network(
+def draw_network(
     network: RlaNetwork, title: str, path: Path, robot: RobotSettings, motions: Mapping[str, WheelSpeeds]
 ) -> None:
-    """Write the network in the format of the file's ending, one of FORMATS; make the folder. Raises OSError.
+    """Write the picture of a network in the format of the file's ending, .svg or .png; make the folder.
 
-    `motions`: of the robot's wheels by action, where they are known.
+    `motions`: of the robot's wheels by action, where they are known. Raises OSError.
     """
-    if path.suffix == GRAPHML:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        network.graph["title"] = title
-        nx.write_graphml(network, path)
-    else:
-        save_figure(_network_figure(network, title, robot, motions), path)
+    save_figure(_network_figure(network, title, robot, motions), path)
 
 
 def _network_figure(

@@ -2,13 +2,14 @@
 
 from pathlib import Path
 
+import networkx as nx
 import numpy as np
 
 from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Expectation, Statistics, pack
-from kurt2rt.knowledge.graph.graph import RlaNetwork, build_network, drop_rare_edges, read_network
+from kurt2rt.knowledge.graph.graph import RlaNetwork, build_network, drop_rare_edges, read_network, write_graphml
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from tests.core.rla.helpers import created
@@ -61,3 +62,15 @@ def test_read_network_without_rlas_is_refused(path: Path) -> None:
             read_network(journal, level=MID)
         with refused(KnowledgeCode.NO_RLA_OF_BEHAVIOUR, behaviour="left"):
             read_network(journal, behaviour="left")
+
+
+def test_graphml_is_read_back_with_the_conditions(tmp_path: Path) -> None:
+    network = build_network(system(), DROVE, features=("s1", "s2"))
+    write_graphml(network, "a title", tmp_path / "made" / "network.graphml")
+    again = nx.read_graphml(tmp_path / "made" / "network.graphml", node_type=int)
+    assert (dict(again.nodes), dict(again.edges), again.graph["title"]) == (
+        dict(network.nodes),
+        dict(network.edges),
+        "a title",
+    )
+    assert again.nodes[3]["s1"] == 3.0

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-import networkx as nx
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -12,30 +11,18 @@ from behaviors.action_groups import usual_speeds
 from hal.robot_settings import load_robot
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.graph.graph import build_network
-from kurt2rt.runs.explain.network_picture import write_network
+from kurt2rt.runs.explain.network_picture import draw_network
 from kurt2rt.runs.explain.sensor_view import draw_motion
 from tests.knowledge.graph.test_graph import DROVE, system
 
 ROBOT, MOTIONS = load_robot(), usual_speeds("basic")
 
 
-def test_graphml_is_read_back_with_the_conditions(tmp_path: Path) -> None:
-    network = build_network(system(), DROVE, features=("s1", "s2"))
-    write_network(network, "a title", tmp_path / "made" / "network.graphml", ROBOT, MOTIONS)
-    again = nx.read_graphml(tmp_path / "made" / "network.graphml", node_type=int)
-    assert (dict(again.nodes), dict(again.edges), again.graph["title"]) == (
-        dict(network.nodes),
-        dict(network.edges),
-        "a title",
-    )
-    assert again.nodes[3]["s1"] == 3.0
-
-
 @pytest.mark.parametrize(("features", "fans"), [((), 0), (("s1", "s2"), 4)], ids=["without sensors", "sensors"])
 def test_picture_has_groups_labels_and_a_fan_in_each_tile(features: Sequence[str], fans: int, tmp_path: Path) -> None:
     pictures = [tmp_path / f"{name}.svg" for name in ("first", "second")]
     for picture in pictures:
-        write_network(build_network(system(), DROVE, features=features), "the title", picture, ROBOT, MOTIONS)
+        draw_network(build_network(system(), DROVE, features=features), "the title", picture, ROBOT, MOTIONS)
     text, again = (picture.read_text(encoding="utf-8") for picture in pictures)
     assert text == again
     for shown in ("the title", "left: forward (2)", "right: forward (2)", ">90<", ">80<", ">4<", ">20x<"):
@@ -48,7 +35,7 @@ def test_mid_level_tiles_are_where_their_places_are(monkeypatch: pytest.MonkeyPa
     drawn: list[Figure] = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
     network = build_network(system(), Statistics(), level="mid", features=("x_m", "y_m"))
-    write_network(network, "places", Path("never.png"), ROBOT, MOTIONS)
+    draw_network(network, "places", Path("never.png"), ROBOT, MOTIONS)
     five, six = (each.get_position() for each in drawn[0].axes[0].texts if each.get_text() in "56")
     assert six[0] - five[0] > 1.0
     assert six[1] == pytest.approx(five[1], abs=0.01)
