@@ -57,7 +57,7 @@ ROOMS: dict[str, frozenset[str]] = {
 """
 CORE_NEVER_IMPORTS = {"time", "asyncio", "anyio", "threading", "socket", "sqlite3", "os"}
 LAYERS_OF_CORE = (
-    {"numerics", "outcome", "lesson_speed", "message_fields", "settings_fields"},
+    {"numerics", "outcome", "lesson_speed", "progress", "message_fields", "settings_fields"},
     {"rla", "perception"},
     {"decision", "outcome_text", "event_store"},
     {"basic", "mid"},

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import anyio
-
 from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.interrupt import end_at_interrupt
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import (
     DEFAULT_TEACHER,
@@ -19,20 +18,8 @@ from kurt2rt.cli.options import (
     changes_of,
     task_option,
 )
-from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
-from kurt2rt.core.task_robot import load_task_and_robot
-from kurt2rt.core.task_settings import taught_by_named
-from kurt2rt.experiments.lockstep.compatibility import require_actions
-from kurt2rt.experiments.lockstep.curriculum import Report, run_exams, run_lesson
-from kurt2rt.experiments.lockstep.drive_row import DriveRow
-from kurt2rt.experiments.lockstep.lesson import TrainingResult
-from kurt2rt.experiments.study.exam_tables import curriculum_as_data, exam_tables, lesson_table
-from kurt2rt.experiments.study.jobs import require_places
-from kurt2rt.experiments.study.table import as_rich
-from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.platform.text_table import print_whole
-from simbridge.contracts.robot_kind import simulations_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +52,22 @@ def demo(options: _Options) -> None:
         kurt2rt demo
         kurt2rt demo --task circle --seed 7
     """
-    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.experiments.lockstep.drawing import draw_curriculum
+    with end_at_interrupt():  # not at the top: a shell waits for the options alone, for --help and at each Tab
+        import anyio
+
+        from kurt2rt.cli.progress import job_bars
+        from kurt2rt.core.task_robot import load_task_and_robot
+        from kurt2rt.core.task_settings import taught_by_named
+        from kurt2rt.experiments.lockstep.compatibility import require_actions
+        from kurt2rt.experiments.lockstep.curriculum import Report, run_exams, run_lesson
+        from kurt2rt.experiments.lockstep.drawing import draw_curriculum
+        from kurt2rt.experiments.lockstep.drive_row import DriveRow
+        from kurt2rt.experiments.lockstep.lesson import TrainingResult
+        from kurt2rt.experiments.study.exam_tables import curriculum_as_data, exam_tables, lesson_table
+        from kurt2rt.experiments.study.jobs import require_places
+        from kurt2rt.experiments.study.table import as_rich
+        from kurt2rt.knowledge.files.archive_existing import archive_existing
+        from simbridge.contracts.robot_kind import simulations_of
 
     task, settings = load_task_and_robot(
         options.task, options.robot_settings, paper_defaults=options.paper_defaults, changes=changes_of(options.changes)

@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.interrupt import end_at_interrupt
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import (
     Changes,
@@ -19,14 +19,7 @@ from kurt2rt.cli.options import (
     refuse_if,
     world_option,
 )
-from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
-from kurt2rt.core.task_robot import require_robot_of
-from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.study.exam_tables import exam_tables, exams_as_data
-from kurt2rt.experiments.study.examination import examine_file
-from kurt2rt.experiments.study.table import as_rich
-from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole
 
 
@@ -78,6 +71,16 @@ def exam(options: _Options) -> None:
 
 
 def _exam(options: _Options, knowledge: Path) -> None:
+    with end_at_interrupt():  # not at the top: a shell waits for the options alone, for --help and at each Tab
+        from hal.robot_settings import load_robot_of
+        from kurt2rt.cli.progress import job_bars
+        from kurt2rt.core.task_robot import require_robot_of
+        from kurt2rt.core.task_settings import load_task
+        from kurt2rt.experiments.study.exam_tables import exam_tables, exams_as_data
+        from kurt2rt.experiments.study.examination import examine_file
+        from kurt2rt.experiments.study.table import as_rich
+        from kurt2rt.knowledge.files.task_of_file import task_of_file
+
     task_name = options.task or task_of_file(knowledge)
     settings = load_robot_of(options.robot_settings, task_name)
     other = changes_of(options.changes)

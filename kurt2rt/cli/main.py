@@ -4,10 +4,10 @@ Imports of the standard library, config.errors and what is small only (interrupt
 Ctrl-C before `main` begins leaves a traceback, and `kurt2rt --help` takes as long as its imports.
 """
 
-import errno
 import io
 import os
 import sys
+from errno import EACCES, EDQUOT, EEXIST, EIO, EISDIR, ENAMETOOLONG, ENOENT, ENOSPC, ENOTDIR, EPERM, EROFS
 from typing import NoReturn
 
 from kurt2rt.platform.own_packages import hidden_packages
@@ -20,18 +20,7 @@ from config.errors import ExitCode, UserError
 from kurt2rt.cli.interrupt import end_at_interrupt
 from kurt2rt.platform.extras import extra_for
 
-_MENDED_BY_ANOTHER_PATH = {
-    errno.EACCES,
-    errno.EDQUOT,
-    errno.EEXIST,
-    errno.EISDIR,
-    errno.ENAMETOOLONG,
-    errno.ENOENT,
-    errno.ENOSPC,
-    errno.ENOTDIR,
-    errno.EPERM,
-    errno.EROFS,
-}
+_MENDED_BY_ANOTHER_PATH = {EACCES, EDQUOT, EEXIST, EISDIR, ENAMETOOLONG, ENOENT, ENOSPC, ENOTDIR, EPERM, EROFS}
 
 _ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS")
 """numpy's libraries read these when they are loaded."""
@@ -89,7 +78,7 @@ def _in_one_line(error: BaseException) -> str | None:
         return f"{whose}{error}"
     if isinstance(error, OSError) and error.errno in _MENDED_BY_ANOTHER_PATH:
         return f"{whose}{error}; give a path that can be written, on a disk with room"
-    if isinstance(error, OSError) and error.errno == errno.EIO:
+    if isinstance(error, OSError) and error.errno == EIO:
         return f"{whose}{error}; see whether the disk or device is well, or give another file"
     return None
 

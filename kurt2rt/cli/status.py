@@ -17,7 +17,6 @@ from kurt2rt.channel.protocol.health import HEALTH, HealthReport
 from kurt2rt.channel.protocol.health_text import URGENT, WARNS, headline, rows_of, trouble_in
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import SettingsName, task_option
-from kurt2rt.core.task_settings import load_task
 from kurt2rt.platform.text_table import Column, TextTable, print_whole
 from kurt2rt.service.health.status_socket import read_reports, status_socket_path
 from kurt2rt.service.settings import load_service
@@ -60,6 +59,8 @@ def status(options: _Options) -> None:
     if knowledge is None:
         knowledge = Path(load_service(options.settings).knowledge)
         if options.task is not None:
+            from kurt2rt.core.task_settings import load_task
+
             knowledge = knowledge.with_name(f"{load_task(options.task).name}.knowledge")
     elif not knowledge.name:
         raise typer.BadParameter("is a folder; give the knowledge file that the robot program was started with")

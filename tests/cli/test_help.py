@@ -90,7 +90,7 @@ HEAVY = (
 OUR_PACKAGES = ("config.settings", "hal.bus", "behaviors", "simbridge", "kurt2rt.runtime", "kurt2rt.service.settings")
 
 
-@pytest.mark.parametrize("words", [["--help"], ["run", "--help"]], ids=" ".join)
+@pytest.mark.parametrize("words", [["--help"], ["run", "--help"], ["demo", "--help"], ["exam", "--help"]], ids=" ".join)
 def test_help_imports_nothing_of_what_a_command_needs(words: list[str]) -> None:
     tell = "import atexit, sys; atexit.register(lambda: print(*sys.modules, file=sys.stderr))"
     command = [sys.executable, "-c", f"{tell}; sys.argv[1:] = {words}; from kurt2rt.cli.main import main; main()"]

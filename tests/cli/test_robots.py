@@ -19,7 +19,7 @@ from rich.console import Console
 from kurt2rt.channel.security.pairing import pairing_names
 from kurt2rt.cli import robots
 from kurt2rt.cli.robots import class_robots, page_of_codes, run_robots
-from kurt2rt.core.progress_meter import Progress
+from kurt2rt.core.progress import Progress
 from kurt2rt.platform.text_table import TextTable
 from kurt2rt.service.child_processes import ChildProcesses
 from kurt2rt.service.settings import ServiceSettings, load_service

@@ -2,7 +2,8 @@
 
 from kurt2rt.core.decision.decision import StandReason
 from kurt2rt.core.decision.standing import Standing
-from kurt2rt.core.progress_meter import Progress, ProgressMeter
+from kurt2rt.core.progress import Progress
+from kurt2rt.core.progress_meter import ProgressMeter
 from kurt2rt.core.tick_record import TickRecord
 from tests.channel.channel_fixture import ChannelFixture
 

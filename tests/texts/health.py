@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from kurt2rt.channel.protocol.health_text import lines_of, progress_in
 from kurt2rt.channel.protocol.trouble_code import TroubleCode, trouble_text
-from kurt2rt.core.progress_meter import NO_PROGRESS, Progress
+from kurt2rt.core.progress import NO_PROGRESS, Progress
 from tests.service.health.reports import ILL, WELL
 
 _NUMBERS = {

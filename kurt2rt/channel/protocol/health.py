@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, WrapSerializer
 from kurt2rt.channel.protocol.schema import Codec
 from kurt2rt.channel.protocol.trouble_code import TroubleCode, numbers_of, trouble_text
 from kurt2rt.core.message_fields import Int, Line, Number, Share, Text, Time, Title, Truth, UpTo, Word
-from kurt2rt.core.progress_meter import NO_PROGRESS, Progress
+from kurt2rt.core.progress import NO_PROGRESS, Progress
 
 MOST_ROWS = 16
 """Most troubles, disks and queues in a report; further ones are left out."""

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from kurt2rt.channel.protocol.health import HealthReport, SensorAges, Trouble
-from kurt2rt.core.progress_meter import WINDOW_S, Progress
+from kurt2rt.core.progress import WINDOW_S, Progress
 
 FINE, WARNS, URGENT = "", "warns", "urgent"
 """Level of a row: without trouble, with a trouble, with an urgent trouble."""

@@ -9,7 +9,7 @@ from kurt2rt.channel.protocol.limits import BOOT_BYTES
 from kurt2rt.channel.protocol.schema import Codec
 from kurt2rt.core.decision.standing import ActiveStop, Standing
 from kurt2rt.core.message_fields import Bytes, Finite, Int, Line, Number, OneOf, Real, Share, Truth, UpTo, Word
-from kurt2rt.core.progress_meter import NO_PROGRESS, Progress
+from kurt2rt.core.progress import NO_PROGRESS, Progress
 from kurt2rt.core.rla.rla import BASIC, Phase
 from kurt2rt.core.teaching.message_fields import MOST_SEGMENTS, Level
 from kurt2rt.core.teaching.question import FeatureDifference

@@ -7,7 +7,7 @@ from hal.health import Health
 from hal.robot import SensorReadings
 from hal.sensor_watch import BrokenSensor
 from kurt2rt.core.decision.standing import short_text
-from kurt2rt.core.progress_meter import NO_PROGRESS, Progress
+from kurt2rt.core.progress import NO_PROGRESS, Progress
 from kurt2rt.core.rla.rla import MID, Rla, rla_title
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import JournalWriter

@@ -8,14 +8,17 @@ from collections.abc import AsyncIterator, Callable, Iterator, Mapping
 from contextlib import asynccontextmanager, contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import anyio
 from anyio.abc import Listener, SocketStream
 
 from kurt2rt.channel.protocol.health import HEALTH, HealthReport
 from kurt2rt.core.message_fields import WireError
-from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.health.status_error import StatusCode, StatusError
+
+if TYPE_CHECKING:
+    from kurt2rt.service.health.monitor import HealthMonitor
 
 _MOST_READERS = 8
 _TAKEN_WITHIN_S = 2.0
@@ -33,7 +36,7 @@ def status_socket_path(knowledge: Path) -> Path:
 class StatusSocket:
     """Socket that sends every reader each report; disconnects a reader that does not read for 2 s."""
 
-    def __init__(self, watch: HealthMonitor, path: Path, pages: Callable[[], tuple[str, ...]] = tuple) -> None:
+    def __init__(self, watch: "HealthMonitor", path: Path, pages: Callable[[], tuple[str, ...]] = tuple) -> None:
         """Listen for reports; `serve` opens the socket.
 
         Args:

@@ -37,7 +37,7 @@ from kurt2rt.core.message_fields import (
     UpTo,
     WireError,
 )
-from kurt2rt.core.progress_meter import Progress
+from kurt2rt.core.progress import Progress
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.teaching.message_fields import MOST_SEGMENTS, GoalField
 from kurt2rt.core.teaching.question import FeatureDifference

@@ -10,7 +10,7 @@ from kurt2rt.channel.protocol.codec import decode_answer, encode_answer
 from kurt2rt.channel.protocol.health import HEALTH, MOST_ROWS, HealthReport, Trouble
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.core.message_fields import WireError
-from kurt2rt.core.progress_meter import Progress
+from kurt2rt.core.progress import Progress
 from tests.service.health.reports import ILL, LATE, WELL
 
 

@@ -21,7 +21,7 @@ from kurt2rt.core.decision.decision import StandReason
 from kurt2rt.core.decision.goal import NamedGoal
 from kurt2rt.core.decision.standing import ActiveStop, Standing, StopReason
 from kurt2rt.core.perception.sensor_words import infrared_law, words_for
-from kurt2rt.core.progress_meter import Progress
+from kurt2rt.core.progress import Progress
 from kurt2rt.core.teaching.question import FeatureDifference
 from tests.channel.states import COMMANDS
 from tests.runs.explain.helpers import facts, level, story
