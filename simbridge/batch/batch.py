@@ -39,7 +39,7 @@ from simbridge.contracts.batch import (
     Tally,
     Trace,
 )
-from simbridge.contracts.simulation import Pose
+from simbridge.contracts.simulation import Pose, Poses
 from simbridge.robot.bumpers import CollisionCounter
 from simbridge.simulated_robot import SimulatedKurt2, hash_state
 
@@ -177,10 +177,10 @@ class RobotBatch:
         """Return the course of a robot over the newest call of `drive`."""
         record = self._robots[robot]
         end = int(record["at"])
-        columns = [record[f"track_{name}"][:end].tolist() for name in Pose._fields]
+        columns = [record[f"track_{name}"][:end] for name in Pose._fields]
         rlas = record["track_rla"][:end]
         return Stretch(
-            list(map(Pose, *columns)),
+            Poses(np.stack(columns, axis=1)),
             record["track_action"][:end].tolist(),
             np.where(rlas == STANDS, STANDS, rlas - self._first_rows[robot]).tolist(),
             record["track_distance"][:end].tolist(),

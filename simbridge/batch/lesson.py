@@ -1,20 +1,18 @@
 """Robot of a lesson in a batch, and its simulation: it drives compiled stretches, which can be taken back."""
 
-from itertools import starmap
-
 import numpy as np
 
 from hal.kurt2_settings import Kurt2Settings
 from simbridge.batch.batch import RobotBatch
-from simbridge.batch.drive import begin_tick
+from simbridge.batch.compiled import with_types_of
 from simbridge.batch.record import STRETCH
 from simbridge.batch.safety import forget_all_contradictions
 from simbridge.batch.tables import build_features, padded_width, require_features
-from simbridge.batch.teach import Learner, Orders, Table, perceive, teach
+from simbridge.batch.teach import Learner, Orders, Table, perceive, sense, teach
 from simbridge.contracts.areas import Borders
 from simbridge.contracts.batch import STANDS, BatchRefusedError, DriveSettings, PolicyMind
 from simbridge.contracts.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtRlas
-from simbridge.contracts.simulation import Pose
+from simbridge.contracts.simulation import Pose, Poses
 from simbridge.robot_simulation import Kurt2Simulation
 from simbridge.simulated_robot import SimulatedKurt2
 
@@ -75,11 +73,15 @@ class CompiledLesson(RobotBatch):
         """Tick up to which choices are valid, while ticks are driven a second time."""
         self._learner = Learner(np.zeros(width, dtype=np.int64), np.zeros(3, dtype=np.int64), np.zeros(1))
         self._orders = Orders(False, -1, 1.0)
+        self._parts = self._robots, self._world, self._laws, self._learner, self._table, self.log
+        self._perceive, self._sense = (with_types_of(function, *self._parts) for function in (perceive, sense))
+        self._teach = with_types_of(teach, 0, self._orders, *self._parts)
         self.tick = 0
         """Tick that the robot has completed."""
         self._kept = 0
         self._draw_noise(0, MOST_TICKS)
-        self._saved = self._robots.copy()
+        self._state, self._waits = np.asarray(self._robots).view(np.uint8), self._robots["waits"]
+        self._saved = self._state.copy()
         self._saved_learner = [array.copy() for array in self._learner]
 
     @property
@@ -90,7 +92,7 @@ class CompiledLesson(RobotBatch):
     @property
     def waits(self) -> bool:
         """Return whether the next tick has begun, and waits for the physics engine."""
-        return bool(self._robots[0]["waits"])
+        return bool(self._waits.item(0))
 
     def watch_borders(self, borders: Borders) -> None:
         """Stop `run` where the robot crosses a border. Raises BatchRefusedError for too many areas."""
@@ -141,13 +143,10 @@ class CompiledLesson(RobotBatch):
 
     def sense(self) -> None:
         """Begin the next tick up to its situation; only after `keep`."""
-        record = self._robots[0]
         if not self.waits:
-            begin_tick(record, self._world, self._laws)
+            self._sense(*self._parts)
         if self.waits:
             self._move_in_engine(0)
-        elif not record["left"]:
-            self._finish(0)
         self._keep_state()
 
     def run(self, until: int) -> int:
@@ -158,16 +157,7 @@ class CompiledLesson(RobotBatch):
         if not until - self._kept <= MOST_TICKS:
             raise ValueError(f"{until - self._kept} ticks to take back: keep after {MOST_TICKS}")
         assert not self.waits, "sense before the next stretch"
-        teach(
-            until,
-            self._robots,
-            self._world,
-            self._laws,
-            self._learner,
-            self._table,
-            self._orders,
-            self.log,
-        )
+        self._teach(until, self._orders, *self._parts)
         self._python_mind.raise_error()
         record = self._robots[0]
         self.tick = int(record["tick"]) - bool(record["waits"] or record["left"])
@@ -177,17 +167,17 @@ class CompiledLesson(RobotBatch):
         """Restore the state at the end of an earlier tick, at most back to the last `keep`."""
         if tick == self.tick and not self.waits and not self._robots[0]["left"]:
             return
-        self._robots[0] = self._saved[0]
+        self._state[:] = self._saved
         for array, saved in zip(self._learner, self._saved_learner, strict=True):
             array[:] = saved
         self._chosen_to = tick
         self.run(tick)
         self._chosen_to = 0
 
-    def keep(self) -> list[Pose]:
+    def keep(self) -> Poses:
         """Keep all ticks so far, and return their poses; the simulation is where the robot is."""
         record, end = self._robots[0], int(self._robots[0]["at"])
-        poses = list(starmap(Pose, self.log.poses[self._kept + 1 : self.tick + 1].tolist()))
+        poses = Poses(self.log.poses[self._kept + 1 : self.tick + 1])
         if poses:
             self._simulated.follow(poses)
         self._keep_set_points(_ALONE)
@@ -220,10 +210,10 @@ class CompiledLesson(RobotBatch):
         return self._choices.item(tick)
 
     def _finish(self, r: int) -> None:  # noqa: ARG002 - there is one robot
-        perceive(self._robots, self._world, self._laws, self._learner, self._table, self.log)
+        self._perceive(*self._parts)
 
     def _keep_state(self) -> None:
-        self._saved[0] = self._robots[0]
+        self._saved[:] = self._state
         for array, saved in zip(self._learner, self._saved_learner, strict=True):
             saved[:] = array
 

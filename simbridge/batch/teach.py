@@ -62,12 +62,12 @@ STEPS, SENSED, DROVE = range(3)
 @compiled
 def teach(
     until: int,
+    orders: Orders,
     robots: Robots,
     world: World,
     laws: Laws,
     learner: Learner,
     table: Table,
-    orders: Orders,
     log: LessonLog,
 ) -> None:
     """Drive the only robot of a batch to the end of a tick.
@@ -79,13 +79,20 @@ def teach(
     if learner.numbers[SENSED]:
         _decide(robot, laws, learner, table, orders, log)
     while robot.tick < until and robot.left == STAYS and not robot.crossed:
-        begin_tick(robot, world, laws)
+        sense(robots, world, laws, learner, table, log)
         if robot.waits:
             return
         if robot.left == STAYS:
-            perceive(robots, world, laws, learner, table, log)
-            if robot.left == STAYS:
-                _decide(robot, laws, learner, table, orders, log)
+            _decide(robot, laws, learner, table, orders, log)
+
+
+@compiled
+def sense(robots: Robots, world: World, laws: Laws, learner: Learner, table: Table, log: LessonLog) -> None:
+    """Run a tick of the only robot of a batch up to its situation, unless it waits for the physics engine."""
+    robot = robots[0]
+    begin_tick(robot, world, laws)
+    if not robot.waits and robot.left == STAYS:
+        perceive(robots, world, laws, learner, table, log)
 
 
 @compiled

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from config.errors import UserError
 from hal.guard_reason import GuardReason
 from simbridge.contracts.areas import Borders
-from simbridge.contracts.simulation import Pose, Simulation, SimulationFactory
+from simbridge.contracts.simulation import Pose, Poses, Simulation, SimulationFactory
 
 STANDS = -1
 """Index of the action of a robot that stands and asks."""
@@ -168,7 +168,7 @@ class Stretch(NamedTuple):
     Each list has one value for each tick.
     """
 
-    poses: list[Pose]
+    poses: Poses
     actions: list[int]
     """Indexes into `Batch.actions`, or STANDS."""
     rlas: list[int]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from simbridge.contracts.areas import Borders
 from simbridge.contracts.batch import Action, Choose, FeatureTable, TabledPolicy
-from simbridge.contracts.simulation import Pose, Simulation, SimulationFactory
+from simbridge.contracts.simulation import Poses, Simulation, SimulationFactory
 
 
 class LessonCause(IntEnum):
@@ -169,7 +169,7 @@ class LessonRobot(Protocol):
         """Restore the state at the end of an earlier tick, at most back to the last `keep`."""
         ...
 
-    def keep(self) -> list[Pose]:
+    def keep(self) -> Poses:
         """Keep all ticks so far, and return their poses; the simulation is where the robot is."""
         ...
 

@@ -6,9 +6,13 @@ and `SimulatedWorld` is the part that a teacher may see and change. A real robot
 
 import random
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
+from itertools import starmap
+from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol, overload
+
+import numpy as np
+from numpy.typing import NDArray
 
 from hal.guarded_robot import GuardedRobot
 from hal.robot import Robot
@@ -38,6 +42,30 @@ class Pose(NamedTuple):
     x_m: float
     y_m: float
     heading_rad: float
+
+
+class Poses(Sequence[Pose]):
+    """Poses of ticks in a row over an array (n, 3), which are made when they are read, because few are."""
+
+    def __init__(self, rows: NDArray[np.float64]) -> None:
+        """Read `rows`, x, y in m and heading in rad, which must not change."""
+        self._rows = rows
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __iter__(self) -> Iterator[Pose]:
+        return starmap(Pose, self._rows.tolist())
+
+    @overload
+    def __getitem__(self, place: int) -> Pose: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> list[Pose]: ...
+
+    def __getitem__(self, place: int | slice) -> Pose | list[Pose]:
+        rows = self._rows[place].tolist()
+        return list(starmap(Pose, rows)) if isinstance(place, slice) else Pose(*rows)
 
 
 WallSide = Literal["left", "right"]

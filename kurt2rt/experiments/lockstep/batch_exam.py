@@ -155,16 +155,18 @@ class _Drive:
     def _measure(self, batch: Batch, robot: int) -> None:
         stretch = batch.stretch(robot)
         poses = stretch.poses
-        self._asked += [pose for pose, begins in zip(poses, stretch.begins, strict=True) if begins]
+        self._asked += [poses[place] for place, begins in enumerate(stretch.begins) if begins]
         if stretch.collisions[-1] > len(self._collided):
-            for pose, collisions in zip(poses, stretch.collisions, strict=True):
+            for place, collisions in enumerate(stretch.collisions):
                 if collisions > len(self._collided):
-                    self._collided.append(pose)
+                    self._collided.append(poses[place])
         self._count_actions(stretch.actions)
         self._follow_poses(poses)
         put = None if self._guide is None else self._guide.look_after(batch, robot)
-        first = -(self._tally.ticks + 1) % _TRAIL_STRIDE
-        self._trail += [*poses[:-1], put or poses[-1]][first::_TRAIL_STRIDE]
+        trail = poses[-(self._tally.ticks + 1) % _TRAIL_STRIDE :: _TRAIL_STRIDE]
+        if put is not None and (self._tally.ticks + len(poses)) % _TRAIL_STRIDE == 0:
+            trail[-1] = put
+        self._trail += trail
 
     def result(self) -> DriveRow | None:
         """Return the result of the exam; None if the robot left the batch."""

@@ -29,10 +29,10 @@ from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 from simbridge.contracts.batch_lesson import LessonCause, LessonFactory, TaughtSimulation
-from simbridge.contracts.simulation import Pose, Position
+from simbridge.contracts.simulation import Poses, Position
 
 _UNKNOWN, _TEACHER = int(LessonCause.UNKNOWN), int(LessonCause.TEACHER)
-_STRETCH_TICKS = 120
+_STRETCH_TICKS = 200
 """Ticks that are driven before the teacher looks: half as many are taken back at a command on average."""
 _ENGINE_TICKS = 50
 """Ticks in a row in the physics engine after which a stretch ends."""
@@ -283,7 +283,7 @@ class BatchTrainingRun(TrainingRun):
             touching=log.touching.item(tick),
         )
 
-    def _pass(self, begin: int, cut: int, poses: list[Pose]) -> None:
+    def _pass(self, begin: int, cut: int, poses: Poses) -> None:
         """Measure the ticks up to `cut` as `after_tick` does one by one, and look after the robot in the last one."""
         asks = self.robot.log.causes[begin + 1 : cut + 1] == _UNKNOWN
         unclean = np.flatnonzero(asks | self.robot.log.touching[begin + 1 : cut + 1])
@@ -299,7 +299,7 @@ class BatchTrainingRun(TrainingRun):
         first = -(begin + 1) % self.trail_stride
         self.trail += poses[first : len(poses) - 1 : self.trail_stride]
         met = np.flatnonzero(np.diff(self.robot.log.collisions[begin : cut + 1]))
-        self.collided_at += [Position(*poses[place][:2]) for place in met]
+        self.collided_at += [Position(*poses[place][:2]) for place in met.tolist()]
         self._look_after(cut)
         self._command_behaviour(self.runtime.active_behaviour.behaviour)
         if cut % self.trail_stride == 0:
@@ -309,7 +309,7 @@ class BatchTrainingRun(TrainingRun):
             self._note_second(tick, self._mind.rlas_after(tick))
             self._on_progress(tick * self.period_s)
 
-    def _count_questions(self, begin: int, poses: list[Pose]) -> None:
+    def _count_questions(self, begin: int, poses: Poses) -> None:
         """Count the questions of the ticks after `begin`, each at its pose."""
         log, rows = self.robot.log, slice(begin + 1, begin + 1 + len(poses))
         columns = (log.causes, log.behaviours, log.sure, log.turned)
@@ -320,7 +320,7 @@ class BatchTrainingRun(TrainingRun):
             if self.question.count(name, asks=asks, sure=sure, moves=turned, pressed=pressed):
                 self.ask_positions.append(Position(pose.x_m, pose.y_m))
 
-    def _measure_all(self, poses: list[Pose]) -> None:
+    def _measure_all(self, poses: Poses) -> None:
         self._pose = poses[-1]
         if self._stretch_metric is not None:
             self._stretch_metric.update_all(poses)
