@@ -90,7 +90,10 @@ class RobotBatch:
         self._robots, self._world = build_robots(robot, simulated, minds, tables)
         self._first_rows = self._knowledge.first[tables]
         # Views, because an item of a record takes Python ten times as long.
-        self._situations, self._wanted = self._robots["situation"], self._robots["behaviour"]
+        fields = ("situation", "behaviour", "at", "left", "waits", "track_told_cm_s")
+        self._situations, self._wanted, self._at, self._left, self._waits, self._told_cm_s = (
+            np.asarray(self._robots[field]) for field in fields
+        )
         # The bodies in the engine draw their slip themselves, when they catch up.
         self._streams = [(copy.deepcopy(each.slip_noise), each.infrared_noise) for each in simulated]
         self._bodies = [ContactBody(each) for each in simulated]
@@ -125,7 +128,7 @@ class RobotBatch:
         while len(active):
             drive(active, ticks, self._robots, self._world, self._laws, self._knowledge, self._averages)
             self._python_mind.raise_error()
-            active = active[self._robots["waits"][active] != 0]
+            active = active[self._waits[active] != 0]
             for r in active.tolist():
                 self._move_in_engine(r)
         self._keep_set_points(chosen)
@@ -138,15 +141,10 @@ class RobotBatch:
 
     def _move_in_engine(self, r: int) -> None:
         """Let the engine move the body of a robot that waits for it, and finish the robot's tick."""
-        record = self._robots[r]
-        end = int(record["at"]) + 1
+        end = self._at.item(r) + 1
         behind = self._set_points.take(r)
-        behind += zip(
-            record["track_left_cm_s"][self._caught_up[r] : end].tolist(),
-            record["track_right_cm_s"][self._caught_up[r] : end].tolist(),
-            strict=True,
-        )
-        self._bodies[r].move(record, behind, self._gap_cycles)
+        behind += map(tuple, self._told_cm_s[r, self._caught_up[r] : end].tolist())
+        self._bodies[r].move(self._robots[r], behind, self._gap_cycles)
         self._caught_up[r] = end
         self._finish(r)
 
@@ -165,13 +163,13 @@ class RobotBatch:
 
     def _keep_set_points(self, chosen: NDArray[np.int64]) -> None:
         """Keep the set points of the present stretch for the bodies in the engine that lag behind."""
-        ends = self._robots["at"][chosen]
-        sides = [self._robots[f"track_{side}_cm_s"][chosen, : ends.max(initial=0)] for side in ("left", "right")]
-        self._set_points.add(chosen, np.stack(sides, axis=2).astype(np.int16), self._caught_up[chosen], ends)
+        ends = self._at[chosen]
+        told_cm_s = self._told_cm_s[chosen, : ends.max(initial=0)].astype(np.int16)
+        self._set_points.add(chosen, told_cm_s, self._caught_up[chosen], ends)
 
     def reason_to_leave(self, robot: int) -> str:
         """Return why a robot cannot be driven in the batch any further; empty if it can."""
-        return _REASONS[int(self._robots[robot]["left"])]
+        return _REASONS[self._left.item(robot)]
 
     def stretch(self, robot: int) -> Stretch:
         """Return the course of a robot over the newest call of `drive`."""

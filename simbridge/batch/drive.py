@@ -99,7 +99,7 @@ def begin_tick(robot: Robot, world: World, laws: Laws) -> None:
     k = robot.at
     robot.last_x_m, robot.last_y_m, robot.last_heading_rad = robot.x_m, robot.y_m, robot.heading_rad
     robot.last_vx_m_s, robot.last_vy_m_s = robot.vx_m_s, robot.vy_m_s
-    robot.track_left_cm_s[k], robot.track_right_cm_s[k] = robot.left_cm_s, robot.right_cm_s
+    robot.track_told_cm_s[k, 0], robot.track_told_cm_s[k, 1] = robot.left_cm_s, robot.right_cm_s
     turn_wheels(robot, laws)
     if robot.engine_ticks > 0:
         robot.slip_used += 2

@@ -8,7 +8,7 @@ from simbridge.batch.compiled import with_types_of
 from simbridge.batch.record import STRETCH
 from simbridge.batch.safety import forget_all_contradictions
 from simbridge.batch.tables import build_features, padded_width, require_features
-from simbridge.batch.teach import Learner, Orders, Table, perceive, sense, teach
+from simbridge.batch.teach import Learner, Table, perceive, sense, teach
 from simbridge.contracts.areas import Borders
 from simbridge.contracts.batch import STANDS, BatchRefusedError, DriveSettings, PolicyMind
 from simbridge.contracts.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtRlas
@@ -66,21 +66,20 @@ class CompiledLesson(RobotBatch):
             added=np.zeros(rows, dtype=np.int64),
             mind=0 if settings.choose is None else self._python_mind.address,
         )
-        self._choose, self._ticks = settings.choose, self._robots["tick"]
+        self._choose, self._ticks, self._until = settings.choose, self._robots["tick"], self._robots["until"]
         self._choices = np.full(rows, STANDS, dtype=np.int8)
         """Index of the action that Python chose in each tick."""
         self._chosen_to = 0
         """Tick up to which choices are valid, while ticks are driven a second time."""
         self._learner = Learner(np.zeros(width, dtype=np.int64), np.zeros(3, dtype=np.int64), np.zeros(1))
-        self._orders = Orders(False, -1, 1.0)
+        self._robots["held"], self._robots["speed_share"] = -1, 1.0
         self._parts = self._robots, self._world, self._laws, self._learner, self._table, self.log
-        self._perceive, self._sense = (with_types_of(function, *self._parts) for function in (perceive, sense))
-        self._teach = with_types_of(teach, 0, self._orders, *self._parts)
+        self._perceive, self._sense, self._teach = with_types_of((perceive, sense, teach), *self._parts)
         self.tick = 0
         """Tick that the robot has completed."""
         self._kept = 0
         self._draw_noise(0, MOST_TICKS)
-        self._state, self._waits = np.asarray(self._robots).view(np.uint8), self._robots["waits"]
+        self._state = np.asarray(self._robots).view(np.uint8)
         self._saved = self._state.copy()
         self._saved_learner = [array.copy() for array in self._learner]
 
@@ -125,10 +124,10 @@ class CompiledLesson(RobotBatch):
 
     def set_mode(self, mode: LessonMode) -> None:
         """Set the orders from the next decision on."""
-        held = self.actions.index(mode.held) if mode.held else -1
-        if self._orders.held >= 0 > held:
-            self._robots[0]["action"] = self._robots[0]["rla"] = -1
-        self._orders = Orders(mode.stopped, held, mode.speed_share)
+        record, held = self._robots[0], self.actions.index(mode.held) if mode.held else -1
+        if record["held"] >= 0 > held:
+            record["action"] = record["rla"] = -1
+        record["stopped"], record["held"], record["speed_share"] = mode.stopped, held, mode.speed_share
         self._keep_state()
 
     def restart_held(self) -> None:
@@ -157,15 +156,15 @@ class CompiledLesson(RobotBatch):
         if not until - self._kept <= MOST_TICKS:
             raise ValueError(f"{until - self._kept} ticks to take back: keep after {MOST_TICKS}")
         assert not self.waits, "sense before the next stretch"
-        self._teach(until, self._orders, *self._parts)
+        self._until[0] = until
+        self._teach(*self._parts)
         self._python_mind.raise_error()
-        record = self._robots[0]
-        self.tick = int(record["tick"]) - bool(record["waits"] or record["left"])
+        self.tick = self._ticks.item(0) - bool(self._waits.item(0) or self._left.item(0))
         return self.tick
 
     def restore_tick(self, tick: int) -> None:
         """Restore the state at the end of an earlier tick, at most back to the last `keep`."""
-        if tick == self.tick and not self.waits and not self._robots[0]["left"]:
+        if tick == self.tick and not self.waits and not self._left.item(0):
             return
         self._state[:] = self._saved
         for array, saved in zip(self._learner, self._saved_learner, strict=True):
@@ -176,14 +175,12 @@ class CompiledLesson(RobotBatch):
 
     def keep(self) -> Poses:
         """Keep all ticks so far, and return their poses; the simulation is where the robot is."""
-        record, end = self._robots[0], int(self._robots[0]["at"])
         poses = Poses(self.log.poses[self._kept + 1 : self.tick + 1])
         if poses:
             self._simulated.follow(poses)
         self._keep_set_points(_ALONE)
-        for side in ("left", "right"):  # of a tick that waits
-            record[f"track_{side}_cm_s"][0] = record[f"track_{side}_cm_s"][end]
-        record["at"] = self._caught_up[0] = 0
+        self._told_cm_s[0, 0] = self._told_cm_s[0, self._at.item(0)]  # of a tick that waits
+        self._at[0] = self._caught_up[0] = 0
         self._draw_noise(0, MOST_TICKS)
         self._kept = self.tick
         self._keep_state()

@@ -211,6 +211,14 @@ class Robot:
     others_away: float
     """Distance from it in counts that no other RLA is nearer than."""
 
+    # Orders of the teacher of a lesson, which hold until its next command (simbridge.batch.teach)
+    until: int
+    """Tick whose end ends the stretch."""
+    stopped: int
+    held: int
+    """Action that the teacher holds; -1: none."""
+    speed_share: float
+
     # Counts of the whole drive (simbridge.contracts.batch.Tally)
     unknown_ticks: int
     questions: int
@@ -240,9 +248,8 @@ class Robot:
     track_rla: Annotated[Integers, (STRETCH,)]
     track_distance: Annotated[Floats, (STRETCH,)]
     track_collisions: Annotated[Integers, (STRETCH,)]
-    track_left_cm_s: Annotated[Integers, (STRETCH,)]
-    """Set points that the motors followed."""
-    track_right_cm_s: Annotated[Integers, (STRETCH,)]
+    track_told_cm_s: Annotated[Integers, (STRETCH, 2)]
+    """Set points that the motors followed, left and right."""
 
     # Readings of a commanded robot in that stretch
     track_counts: Annotated[Integers, (TRACED_TICKS, "sensors")]

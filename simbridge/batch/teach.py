@@ -30,15 +30,6 @@ class Learner(NamedTuple):
     """Way since the last counted tick of a slow lesson, (1,)."""
 
 
-class Orders(NamedTuple):
-    """Orders of the teacher to a taught robot in a batch, which hold until its next command."""
-
-    stopped: bool
-    held: int
-    """Action that the teacher holds; -1: none."""
-    speed_share: float
-
-
 class Table(NamedTuple):
     """RLAs that a taught robot decides by, in arrays with free rows for later lessons; oldest first."""
 
@@ -60,30 +51,21 @@ STEPS, SENSED, DROVE = range(3)
 
 
 @compiled
-def teach(
-    until: int,
-    orders: Orders,
-    robots: Robots,
-    world: World,
-    laws: Laws,
-    learner: Learner,
-    table: Table,
-    log: LessonLog,
-) -> None:
-    """Drive the only robot of a batch to the end of a tick.
+def teach(robots: Robots, world: World, laws: Laws, learner: Learner, table: Table, log: LessonLog) -> None:
+    """Drive the only robot of a batch to the end of the tick `until` of its record.
 
     It ends sooner if the robot crosses a border, waits for the physics engine or leaves.
     """
     robot = robots[0]
     robot.crossed = 0
     if learner.numbers[SENSED]:
-        _decide(robot, laws, learner, table, orders, log)
-    while robot.tick < until and robot.left == STAYS and not robot.crossed:
+        _decide(robot, laws, learner, table, log)
+    while robot.tick < robot.until and robot.left == STAYS and not robot.crossed:
         sense(robots, world, laws, learner, table, log)
         if robot.waits:
             return
         if robot.left == STAYS:
-            _decide(robot, laws, learner, table, orders, log)
+            _decide(robot, laws, learner, table, log)
 
 
 @compiled
@@ -130,21 +112,21 @@ def perceive(robots: Robots, world: World, laws: Laws, learner: Learner, table: 
 
 
 @compiled
-def _decide(robot: Robot, laws: Laws, learner: Learner, table: Table, orders: Orders, log: LessonLog) -> None:
+def _decide(robot: Robot, laws: Laws, learner: Learner, table: Table, log: LessonLog) -> None:
     """Decide the tick that was sensed, and send CONTROL."""
     learner.numbers[SENSED] = 0
-    tick, cause = robot.tick, _choose(robot, laws, table, orders, log)
+    tick, cause = robot.tick, _choose(robot, laws, table, log)
     left_m_s = right_m_s = 0.0
     drives = robot.action >= 0
     if drives:
         left_m_s, right_m_s = step_action(robot, laws.mind)
-    slow = drives and orders.speed_share < 1.0
+    slow = drives and robot.speed_share < 1.0
     robot.way_counts = 1
     if slow:
-        way, counts = _advance_way(learner.way[0], orders.speed_share)
+        way, counts = _advance_way(learner.way[0], robot.speed_share)
         learner.way[0] = way
         robot.way_counts = 1 if counts else 0
-        left_m_s, right_m_s = orders.speed_share * left_m_s, orders.speed_share * right_m_s
+        left_m_s, right_m_s = robot.speed_share * left_m_s, robot.speed_share * right_m_s
     learner.numbers[DROVE] = 1 if drives else 0
     log.causes[tick], log.actions[tick], log.slow[tick] = cause, robot.action, slow
     log.rlas[tick] = robot.rla if cause in (BY_RLA, HELD) else 0
@@ -157,13 +139,13 @@ def _decide(robot: Robot, laws: Laws, learner: Learner, table: Table, orders: Or
 
 
 @compiled
-def _choose(robot: Robot, laws: Laws, table: Table, orders: Orders, log: LessonLog) -> int:
+def _choose(robot: Robot, laws: Laws, table: Table, log: LessonLog) -> int:
     """Let the nearest RLA, Python or the teacher choose the action; return the cause, a number of LessonCause."""
     log.sure[robot.tick] = False
-    if orders.held >= 0:
-        robot.action = orders.held
+    if robot.held >= 0:
+        robot.action = robot.held
         return TEACHER
-    if orders.stopped:
+    if robot.stopped:
         robot.action = robot.rla = -1
         return STOPPED
     features, tick = table.features, robot.tick

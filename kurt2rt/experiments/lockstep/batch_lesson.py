@@ -221,7 +221,7 @@ class BatchTrainingRun(TrainingRun):
             return None
         log = self.robot.log
         asks = log.causes[begin + 1 : end + 1] == _UNKNOWN
-        edges = [0, *(np.flatnonzero(asks[1:] != asks[:-1]) + 1).tolist(), end - begin]
+        edges: list[int] = [0, *((asks[1:] != asks[:-1]).nonzero()[0] + 1).tolist(), end - begin]
         for first, after in pairwise(edges):
             if first < after and asks[first]:
                 detector.restart()
@@ -247,7 +247,7 @@ class BatchTrainingRun(TrainingRun):
         differs = asks | ((actions[1:] >= 0) & (actions[1:] != right[1:]))
         # A question has no action, and a robot without an action asks or was stopped.
         changes = (actions[1:] != actions[:-1]) | (right[1:] != right[:-1])
-        ahead = _LessonAhead(*(np.flatnonzero(each) + begin + 1 for each in (asks, differs, changes)))
+        ahead = _LessonAhead(*(each.nonzero()[0] + begin + 1 for each in (asks, differs, changes)))
         held_to = self._mind.held_to
         tick, until = begin, last if held_to is None else min(last, held_to)
         # A teacher sees at once that another behaviour is wanted.
@@ -286,7 +286,7 @@ class BatchTrainingRun(TrainingRun):
     def _pass(self, begin: int, cut: int, poses: Poses) -> None:
         """Measure the ticks up to `cut` as `after_tick` does one by one, and look after the robot in the last one."""
         asks = self.robot.log.causes[begin + 1 : cut + 1] == _UNKNOWN
-        unclean = np.flatnonzero(asks | self.robot.log.touching[begin + 1 : cut + 1])
+        unclean = (asks | self.robot.log.touching[begin + 1 : cut + 1]).nonzero()[0]
         if len(unclean):
             self._note_unclean(begin + 1 + int(unclean[-1]))
         self.ticks = cut
@@ -298,7 +298,8 @@ class BatchTrainingRun(TrainingRun):
         self._follow_detector(self._stuck, begin, cut - 1)
         first = -(begin + 1) % self.trail_stride
         self.trail += poses[first : len(poses) - 1 : self.trail_stride]
-        met = np.flatnonzero(np.diff(self.robot.log.collisions[begin : cut + 1]))
+        collisions = self.robot.log.collisions[begin : cut + 1]
+        met = (collisions[1:] != collisions[:-1]).nonzero()[0]
         self.collided_at += [Position(*poses[place][:2]) for place in met.tolist()]
         self._look_after(cut)
         self._command_behaviour(self.runtime.active_behaviour.behaviour)

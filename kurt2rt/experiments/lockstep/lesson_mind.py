@@ -223,7 +223,7 @@ class LessonMind:
         rows = slice(max(0, first - 2), until)
         drove, turned = self._robot.log.actions[rows] >= 0, self._robot.log.turned[rows]
         changed = (drove[1:] != drove[:-1]) | (turned[1:] != turned[:-1])
-        changes = np.flatnonzero(changed) + rows.start + 2
+        changes = changed.nonzero()[0] + rows.start + 2
         for tick in sorted({first, *changes.tolist()}):
             self._recent.newest = tick - 1
             self._before_decision(tick)
@@ -235,7 +235,7 @@ class LessonMind:
         driving = log.rlas[first - 1 : last + 1]
         at_full_speed = np.where(log.slow[first - 1 : last + 1], 0, driving)
         changed = (driving[1:] != driving[:-1]) | (at_full_speed[1:] != at_full_speed[:-1])
-        ticks = {first, *(np.flatnonzero(changed) + first).tolist()}
+        ticks = {first, *(changed.nonzero()[0] + first).tolist()}
         # A lesson acts on the tick after it, in which the same RLA may count as another one.
         ticks.update(tick + after for tick, _ in self._events for after in (0, 1) if tick + after <= last)
         for tick in sorted(ticks):
@@ -257,6 +257,6 @@ class LessonMind:
     def _count_questions(self, first: int, last: int) -> None:
         """Tell the handler of each question's first and last tick, and of the tick after it."""
         asks = self._robot.log.causes[first : last + 1] == _UNKNOWN
-        edges = np.flatnonzero(asks[1:] != asks[:-1])
+        edges = (asks[1:] != asks[:-1]).nonzero()[0]
         for place in sorted({0, len(asks) - 1, *edges.tolist(), *(edges + 1).tolist()}):
             self._handler.on_decision(first + place, asks=bool(asks[place]))
