@@ -11,7 +11,6 @@ import anyio.to_thread
 import typer
 from rich.console import Console
 
-from hal.robot_settings import load_robot, robot_that_task_names
 from kurt2rt.channel.security.pairing import LOCAL, TERMINAL, Device, open_device
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import (
@@ -25,16 +24,12 @@ from kurt2rt.cli.options import (
     refuse_if,
     task_option,
 )
-from kurt2rt.cli.scripted_file import people_agree
 from kurt2rt.cli.teach_shutdown import until_teaching_ends
 from kurt2rt.core.rla.rla import AUTO, PROGRAMS
-from kurt2rt.core.task_settings import load_task, taught_by_named
 from kurt2rt.platform.text_table import print_lines
 from kurt2rt.service.settings import ServiceSettings, load_service
 from kurt2rt.teacher.client.answer import NoAnswerError, no_robot
 from kurt2rt.teacher.client.client import TeacherClient
-from kurt2rt.teacher.scripted.channel_teacher import teach_by_script
-from kurt2rt.teacher.terminal.terminal import TerminalTeacher
 
 _NEWEST_LESSONS = 20
 
@@ -129,6 +124,8 @@ def teach(options: _Options) -> None:
     noted = open_device(service.pairings, name, service.port)
     device = replace(noted, host=options.robot or noted.host, port=options.port or noted.port)
     if options.terminal:
+        from kurt2rt.teacher.terminal.terminal import TerminalTeacher
+
         place = f"{device.host}:{device.port}"
         _teach(device, lambda robot, say: TerminalTeacher(robot, sys.stdin, say, place).teach())
     elif options.auto:
@@ -185,6 +182,12 @@ def _teach(device: Device, teacher: Callable[[TeacherClient, _Print], Awaitable[
 async def _by_script(
     device: Device, service: ServiceSettings, options: _Options, client: TeacherClient, print_line: _Print
 ) -> None:
+    # Here, because the page does without them, and who started kurt2rt run waits for it.
+    from hal.robot_settings import load_robot, robot_that_task_names
+    from kurt2rt.cli.scripted_file import people_agree
+    from kurt2rt.core.task_settings import load_task, taught_by_named
+    from kurt2rt.teacher.scripted.channel_teacher import teach_by_script
+
     try:
         await client.hello()
         # kurt2rt run has asked already whether a person's file may be used.

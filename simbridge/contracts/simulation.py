@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.guarded_robot import GuardedRobot
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
-from hal.tap import Tap
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from hal.guarded_robot import GuardedRobot
+    from hal.tap import Tap
 
 
 GENERATED_KINDS = ("rooms", "flats", "streets", "floors")
@@ -241,7 +242,7 @@ class SimulationFactory(Protocol):
         """Check that each world can be used. Raises config.settings.SettingsError."""
         ...
 
-    def live(self, world: str, seed: int, tap: Tap | None = None) -> "AbstractContextManager[LiveSimulation]":
+    def live(self, world: str, seed: int, tap: "Tap | None" = None) -> "AbstractContextManager[LiveSimulation]":
         """Return a context in which a simulation runs in real time, with the watchdog of its driver.
 
         A stall of this program does not keep the robot stopped: its wheels stalled with it. Leaving stops the robot,
@@ -334,6 +335,6 @@ class LiveSimulation(NamedTuple):
     """Simulation in real time with the driver of its robot, and the world that a teacher can change."""
 
     simulation: Simulation
-    robot: GuardedRobot
+    robot: "GuardedRobot"
     """Driver of the simulated robot."""
     world: RunningWorld
