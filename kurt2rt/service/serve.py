@@ -271,7 +271,7 @@ class _Run:
 
 @contextmanager
 def _writing(journal: Journal, shutdown: ShutdownHandler) -> Iterator[JournalWriter]:
-    writer = JournalWriter(journal, utc_now)
+    writer = JournalWriter(journal, utc_now).start()
     try:
         yield writer
     finally:

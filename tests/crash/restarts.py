@@ -20,7 +20,7 @@ def a_lesson_at_a_time(path: Path, disk: WatchedDisk) -> list[Acknowledgement]:
     """Teach through the writer, as the robot does, with statistics in between; what was acknowledged."""
     acknowledged: list[Acknowledgement] = []
     with taught(path) as journal:
-        writer = JournalWriter(journal, now=lambda: STAMP, retry=SOON)
+        writer = JournalWriter(journal, now=lambda: STAMP, retry=SOON).start()
         for number in LESSONS:
             writer.submit(created(number))
             writer.submit_statistics(Statistics({1: number}, {(1, 2): number}))

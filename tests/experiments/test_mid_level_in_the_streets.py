@@ -36,7 +36,7 @@ class Service:
 
     def __init__(self, simulation: Kurt2Simulation, clock: LockstepClock, path: Path) -> None:
         opened = open_for_teaching(path, ROBOT, ROUTE)
-        self.writer = JournalWriter(opened.journal, lambda: STAMP)
+        self.writer = JournalWriter(opened.journal, lambda: STAMP).start()
         self.settled: list[Acknowledgement] = []
         self.questions: list[Question | MidQuestion] = []
         wanted = ActiveBehaviour(ROUTE.behaviours)

@@ -32,7 +32,7 @@ class Shift:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.writer = JournalWriter(open_for_teaching(path, ROBOT, TASK).journal, lambda: STAMP)
+        self.writer = JournalWriter(open_for_teaching(path, ROBOT, TASK).journal, lambda: STAMP).start()
         self.desk = ChannelFixture(keeper=self.writer)
         self.stamps: dict[str, str] = {}
         self.statuses: list[ProgramStatus] = []

@@ -72,7 +72,7 @@ class JournalWriter:
         retry: RetryDelays | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Start the thread; `now` stamps the rows, `clock` (seconds) tells whether a write hangs."""
+        """`now` stamps the rows, `clock` (seconds) tells whether a write hangs."""
         self._failure: str | None = None
         self._journal = journal
         self._now = now
@@ -94,7 +94,13 @@ class JournalWriter:
         self._flushes: list[_Flush] = []
         self._reconnects = False
         self._thread = threading.Thread(target=self._run, name="knowledge journal", daemon=True)
+        self._started = False
+
+    def start(self) -> Self:
+        """Start the thread, once. Without it the caller calls `write_waiting`."""
+        self._started = True
         self._thread.start()
+        return self
 
     @property
     def saving_error(self) -> str | None:
@@ -156,16 +162,26 @@ class JournalWriter:
         if not self._accepting:
             return
         self._accepting = False
-        until_s = time.monotonic() + timeout_s
-        self.flush(timeout_s)
-        self._queued.put(_Stop())
-        self._thread.join(max(0.0, until_s - time.monotonic()))
+        if self._started:
+            until_s = time.monotonic() + timeout_s
+            self.flush(timeout_s)
+            self._queued.put(_Stop())
+            self._thread.join(max(0.0, until_s - time.monotonic()))
+        else:
+            self.write_waiting()
+            self._end()
         if self.saving_error is not None or self._thread.is_alive():
             reason = self.saving_error or f"{self._journal.path}: the disk does not answer; look at its health"
             raise KnowledgeError(KnowledgeCode.LESSONS_NOT_WRITTEN, reason=reason, count=self.unwritten)
 
+    def write_waiting(self) -> None:
+        """Write what waits, once; a disk that fails is tried again by the next call. Only without the thread."""
+        while not self._queued.empty():
+            self._sort(self._queued.get())
+        self._try()
+
     def __enter__(self) -> Self:
-        return self
+        return self.start()
 
     def __exit__(self, *_: object) -> None:
         self.close()
@@ -200,41 +216,47 @@ class JournalWriter:
         pause_s = 0.0
         while True:
             stop = self._receive(pause_s)
-            try:
-                if self._reconnects:
-                    self._journal.reconnect()
-                    self._reconnects = False
-                self._write()
-            except KnowledgeError as error:
-                self._failure = str(error)
-                self._reconnects = self._reconnects or isinstance(error, ReconnectRequiredError)
-                pause_s = min(max(2 * pause_s, self._retry.first_s), self._retry.longest_s)
-            else:
-                self._failure = None
-                pause_s = 0.0
+            pause_s = 0.0 if self._try() else min(max(2 * pause_s, self._retry.first_s), self._retry.longest_s)
             if stop:
                 return
+
+    def _try(self) -> bool:
+        """Write everything sorted, and return whether the disk took it; `saving_error` holds the error."""
+        try:
+            if self._reconnects:
+                self._journal.reconnect()
+                self._reconnects = False
+            self._write()
+        except KnowledgeError as error:
+            self._failure = str(error)
+            self._reconnects = self._reconnects or isinstance(error, ReconnectRequiredError)
+            return False
+        self._failure = None
+        return True
 
     def _receive(self, pause_s: float) -> bool:
         """Sort everything queued and return whether to stop; wait for the next item, or the whole pause."""
         until_s = time.monotonic() + pause_s
-        item = self._queued.get() if pause_s == 0.0 else None
-        while True:
-            match item:
-                case _Stop():
-                    return True
-                case _Flush():
-                    self._flushes.append(item)
-                case Statistics():
-                    self._statistics = item
-                case None:  # only at the start of a pause
-                    pass
-                case _:
-                    self._receive_event(item)
+        stop = pause_s == 0.0 and self._sort(self._queued.get())
+        while not stop:
             try:
-                item = self._queued.get(timeout=max(0.0, until_s - time.monotonic()))
+                stop = self._sort(self._queued.get(timeout=max(0.0, until_s - time.monotonic())))
             except queue.Empty:
                 return False
+        return True
+
+    def _sort(self, item: TeachingEvent | Statistics | _Flush | _Stop) -> bool:
+        """Put an item with what waits to be written; return whether it is the last one."""
+        match item:
+            case _Stop():
+                return True
+            case _Flush():
+                self._flushes.append(item)
+            case Statistics():
+                self._statistics = item
+            case _:
+                self._receive_event(item)
+        return False
 
     def _receive_event(self, event: TeachingEvent) -> None:
         try:

@@ -210,7 +210,7 @@ def test_submit_statistics_only_the_newest_is_written(path: Path) -> None:
 
 
 def test_close_unwritten_lessons_are_counted(path: Path) -> None:
-    writer = writer_of(path)
+    writer = writer_of(path).start()
     with closing(sqlite3.connect(path, isolation_level=None)) as other:
         other.execute("BEGIN IMMEDIATE")
         writer.submit(created(1))
@@ -228,7 +228,7 @@ def test_error_dead_thread_is_told(path: Path) -> None:
     def stopped_clock() -> str:
         raise OSError("no clock")
 
-    writer = JournalWriter(Journal.open(path, BINDING), now=stopped_clock)
+    writer = JournalWriter(Journal.open(path, BINDING), now=stopped_clock).start()
     writer.submit(created(1))
     assert "OSError('no clock')" in wait_for_error(writer)
     assert not writer.flush(timeout_s=60)

@@ -20,11 +20,46 @@ Target = Literal[
     "clock",
     "tick",
     "recorder",
+    "bumpers",
+    "cable",
+    "controller",
+    "stranger",
+    "link",
+    "program",
+    "wall_clock",
 ]
-"""Part that fails; bus_in is the direction from robot to notebook, bus_out the opposite one."""
+"""Part that fails; bus_in is the direction from robot to notebook, bus_out the opposite one. The last seven fail in
+stories only: a stranger is another node on the bus, link the one of the teacher's device."""
 
-Kind = Literal["off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent"]
-"""Kind of fault: no output, repeated output, nonsense, plausible but false, rarer, late, on and off."""
+Kind = Literal[
+    "off",
+    "stuck",
+    "garbage",
+    "wrong",
+    "slow",
+    "delayed",
+    "intermittent",
+    "full",
+    "read_only",
+    "sound",
+    "pressed",
+    "jump",
+    "lost",
+    "doubled",
+    "reordered",
+    "replayed",
+    "bus_off",
+    "restart",
+    "telemetry",
+    "keys_renewed",
+    "killed",
+    "killed_before_commit",
+    "killed_after_commit",
+    "back",
+    "ahead",
+]
+"""Kind of fault: no output, repeated output, nonsense, plausible but false, rarer, late, on and off; then those that
+only stories have. A sound hand is no fault: a second teacher drives."""
 
 LeadsTo = Literal["stands", "asks", "stutters", "drives_on"]
 """Required reaction.
@@ -36,8 +71,9 @@ moments. drives_on: never stands.
 EndsBy = Literal["itself", "resume", "press", "restart"]
 """Condition to drive again after the fault: nothing, a teacher's resume, a new press, a restart with a resume."""
 
-TARGETS: tuple[Target, ...] = get_args(Target)
-KINDS: tuple[Kind, ...] = get_args(Kind)
+TARGETS: tuple[Target, ...] = get_args(Target)[:12]
+KINDS: tuple[Kind, ...] = get_args(Kind)[:7]
+"""Targets and kinds of the drills."""
 
 Seconds = Annotated[float, Field(gt=0, le=10)]
 
@@ -53,6 +89,8 @@ class Limits(Settings):
     """Longest step in which speed may change, also after a brake, when the guard starts at its last set point."""
     command_age_s: Seconds
     controller_watchdog_s: Seconds
+    senses_age_s: Seconds
+    """Longest silence of one of the range sensors' frames in which wheels may turn."""
 
 
 class Row(Settings):
@@ -69,6 +107,8 @@ class Row(Settings):
     leads_to: LeadsTo
     because: str | tuple[str, ...] = ()
     """Guard reason or decision cause of the standstill; any one of several."""
+    also: tuple[str, ...] = ()
+    """Further reasons of a robot whose other parts fail, too, or whose fault is longer or shorter than in a drill."""
     within_s: Seconds | None = None
     """Limit from the fault to the (first) standstill on the robot's end of the bus."""
     latches: str | None = None
@@ -96,6 +136,37 @@ class Row(Settings):
         return self
 
 
+class Fault(NamedTuple):
+    """Fault of one target for a span of simulated time; `period_s` and `delay_s` as in the table."""
+
+    target: Target
+    kind: Kind
+    begin_s: float
+    end_s: float
+    period_s: float = 1.0
+    delay_s: float = 1.0
+
+    def __str__(self) -> str:
+        return f"{self.target} {self.kind}"
+
+    def acts(self, now_s: float) -> bool:
+        """Return whether the fault acts at `now_s`; an intermittent one acts while it fails."""
+        if not self.begin_s <= now_s < self.end_s:
+            return False
+        return self.kind != "intermittent" or int((now_s - self.begin_s) / self.period_s) % 2 == 0
+
+
+class StoryRow(Settings):
+    """Fault that only stories have."""
+
+    lasts_s: tuple[float, float]
+    """Shortest and longest duration, in s."""
+    because: tuple[str, ...] = ()
+    """Guard reasons and decision causes of a robot that may stand because of it."""
+    delay_s: Seconds = 1.0
+    """Delay."""
+
+
 class Schedule(Settings):
     """Times of a drill."""
 
@@ -113,6 +184,7 @@ class FaultTable(Settings):
     schedule: Schedule
     envelope: Limits
     cases: dict[Target, dict[Kind, Row]]
+    stories: dict[Target, dict[Kind, StoryRow]]
 
 
 class Case(NamedTuple):
@@ -124,6 +196,11 @@ class Case(NamedTuple):
 
     def __str__(self) -> str:
         return f"{self.target} {self.kind}"
+
+    def at(self, begin_s: float, lasts_s: float) -> "Fault":
+        """Return the fault of this case, for as long as its row says, or else for `lasts_s`."""
+        end_s = begin_s + (self.must.lasts_s or lasts_s)
+        return Fault(self.target, self.kind, begin_s, end_s, self.must.period_s, self.must.delay_s)
 
 
 TABLE = load_settings(Path(__file__).with_name("table.yaml"), FaultTable)

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from tests.faults.drill import LOST_FRAMES, Outcome
-from tests.faults.table import Row
+from tests.stories.drill import LOST_FRAMES, Outcome
+from tests.stories.table import Row
 
 _MOMENT_S = 0.03
 """Longest standstill of a robot that reverses, some ticks."""

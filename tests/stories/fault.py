@@ -1,10 +1,9 @@
-"""Simulated time, and the one fault in it that robot and program ask about."""
+"""Simulated time, and the faults in it that robot and program ask about."""
 
 import heapq
 from collections.abc import Callable
-from typing import NamedTuple
 
-from tests.faults.table import Case, Kind, Target
+from tests.stories.table import Fault, Target
 
 
 class SimulatedTime:
@@ -47,52 +46,36 @@ class SimulatedTime:
         self._now_s = max(self._now_s, time_s)
 
 
-class Fault(NamedTuple):
-    """Fault of one target for a span of simulated time; `period_s` and `delay_s` as in the table."""
-
-    target: Target
-    kind: Kind
-    begin_s: float
-    end_s: float
-    period_s: float
-    delay_s: float
-
-    def acts(self, now_s: float) -> bool:
-        """Return whether the fault acts at `now_s`; an intermittent one acts while it fails."""
-        if not self.begin_s <= now_s < self.end_s:
-            return False
-        return self.kind != "intermittent" or int((now_s - self.begin_s) / self.period_s) % 2 == 0
-
-
 class FaultInjection:
-    """The fault that is planned, under way or just over, shared by all parts that may fail."""
+    """Faults that are planned, under way or just over, at most one of each target, shared by all that may fail."""
 
     def __init__(self, time: SimulatedTime) -> None:
         self.time = time
-        self.fault: Fault | None = None
-        self.acted = False
-        """Whether the fault has changed anything yet."""
+        self.acted: set[Fault] = set()
+        """Faults that have changed something."""
+        self._faults: dict[Target, Fault] = {}
 
-    def plan(self, case: Case, begin_s: float, lasts_s: float) -> Fault:
-        """Plan the fault of a case, in place of the one before."""
-        must = case.must
-        end_s = begin_s + (must.lasts_s or lasts_s)
-        self.fault = Fault(case.target, case.kind, begin_s, end_s, must.period_s, must.delay_s)
-        self.acted = False
-        return self.fault
+    def plan(self, fault: Fault) -> None:
+        """Plan a fault in place of the one before of its target."""
+        self._faults[fault.target] = fault
 
-    def end(self) -> None:
-        self.fault = None
+    @property
+    def is_quiet(self) -> bool:
+        """True if no fault is planned or under way."""
+        return not self._faults
+
+    def end(self, target: Target) -> None:
+        """Forget the fault of a target."""
+        self._faults.pop(target, None)
 
     def of(self, target: Target) -> Fault | None:
         """Return the fault of a target, also before its beginning and after its end."""
-        fault = self.fault
-        return fault if fault is not None and fault.target == target else None
+        return self._faults.get(target)
 
     def acting_on(self, target: Target) -> Fault | None:
         """Return the fault of a target if it acts now."""
-        fault = self.of(target)
+        fault = self._faults.get(target)
         if fault is None or not fault.acts(self.time.now_s()):
             return None
-        self.acted = True
+        self.acted.add(fault)
         return fault

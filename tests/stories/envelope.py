@@ -3,15 +3,18 @@
 It shares no code with the guard or the guard's codec, so that an error of one cannot hide an error of the other.
 """
 
+import math
 import struct
 from typing import NamedTuple
 
-from tests.faults.table import Limits
+from tests.stories.table import Limits
 
 _SPEED_CM = 2
 _SET_POINT = struct.Struct(">HhhH")
 _BRAKE_PAYLOAD = bytes((0, 0, 0x01, 0x03, 0xFF, 0x01, 0x03, 0xFF))
 """RAW, both sides: brake, no drive (docs/the-robot.md#control-modes)."""
+_RANGE_FRAMES = frozenset((5, 6, 7, 21, 22))
+"""Identifiers of the frames that hold the 18 range sensors (docs/the-robot.md#messages)."""
 _ROUNDING = 1e-6
 _MOST_UNDER_WAY = 2048
 """Frames in transit that are remembered; an older frame counts as lost."""
@@ -67,9 +70,16 @@ class Envelope:
         """True while the driver reads a pressed bumper: the blocked wheels stop and may reverse at once."""
         self._limits = limits
         self._in_transit: dict[int, _SentFrame] = {}
+        self._heard_at_s: dict[int, float] = {}
+        """Time of the newest frame of each identifier that the robot sends."""
         self._last_put: _SentFrame | None = None
         self._last_arrived: _SentFrame | None = None
         self._arrived_number = 0
+
+    def on_heard(self, frame_id: int, at_s: float) -> None:
+        """Note a frame that arrives at the notebook. `at_s`: simulated time in s."""
+        if frame_id in _RANGE_FRAMES:
+            self._heard_at_s[frame_id] = at_s
 
     def on_sent(self, number: int, at_s: float, payload: bytes, age_s: float, *, latched: bool) -> None:
         """Check a frame that the driver hands to its bus; a violation is appended to `violations`.
@@ -87,6 +97,9 @@ class Envelope:
             return
         if not told.standing and not age_s <= self._limits.command_age_s + _ROUNDING:
             self._complain(at_s, f"a command {age_s * 1000:.1f} ms old")
+        senses_age_s = at_s - min(self._heard_at_s.values(), default=-math.inf)
+        if not told.standing and senses_age_s > self._limits.senses_age_s + _ROUNDING:
+            self._complain(at_s, f"moves though range sensors were silent for {senses_age_s * 1000:.0f} ms")
         if latched and not told.brake:
             self._complain(at_s, "no brake though the robot is to stay stopped")
         self._require_slow(at_s, told)

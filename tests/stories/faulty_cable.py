@@ -1,4 +1,4 @@
-"""Faults of sensor boards, adapters and drivers at the ends of a cable."""
+"""Faults of sensor boards, adapters, drivers and strangers at the ends of a cable."""
 
 import random
 import struct
@@ -9,9 +9,9 @@ import can
 from hal.bus import CONTROL_ID
 from hal.codec import Codec
 from hal.frame import Frame
-from tests.faults.cable import SOUND, Cable, CableFaults, CableInterface
-from tests.faults.fault import Fault, FaultInjection
-from tests.faults.table import Target
+from tests.stories.cable import SOUND, Cable, CableFaults, CableInterface
+from tests.stories.fault import FaultInjection
+from tests.stories.table import Fault, Target
 
 Deliver = Callable[[Frame], None]
 
@@ -22,6 +22,13 @@ _FLOOR_AND_PLATEAU = 620
 _FOREIGN_COMMAND = Frame(CONTROL_ID, struct.pack(">HhhH", 2, 20, 20, 1))
 """Foreign SPEED_CM command, 0.2 m/s on both sides."""
 _ROUNDING_S = 1e-9
+_BUS_OFF, _RESTARTED = 0x040, 0x100
+"""Classes of error frames (linux/can/error.h)."""
+_STRANGER_EVERY_S = 0.004
+_FRONT_BUMPER = 1
+_MOST_TICKS = 32767
+_SHARE = 0.3
+"""Share of the frames that a poor cable loses or doubles."""
 
 
 class _RobotsEnd(CableInterface):
@@ -32,6 +39,9 @@ class _RobotsEnd(CableInterface):
         self._faults = faults
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        if self._faults.are_quiet_for(msg):
+            super().send(msg, timeout)
+            return
         send = super().send
         self._faults.carry_from_board(Frame(msg.arbitration_id, bytes(msg.data)), lambda each: send(each, timeout))
 
@@ -50,19 +60,43 @@ class _NotebooksEnd(CableInterface):
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
         """Send a frame through the driver, or later. Raises OSError if the adapter is gone."""
+        self._check_open()
         send = super().send
-        self._faults.carry_from_notebook(Frame(msg.arbitration_id, bytes(msg.data)), lambda each: send(each, timeout))
+
+        def send_if_open(each: Frame) -> None:
+            if self._open:  # what waits in a driver is gone with it
+                send(each, timeout)
+
+        self._faults.carry_from_notebook(Frame(msg.arbitration_id, bytes(msg.data)), send_if_open)
 
     def deliver(self, frame: can.Message, at_s: float, *, own: bool) -> None:
         if own:
             super().deliver(frame, at_s, own=True)
             return
+        if self._faults.is_quiet:
+            self._faults.on_heard(frame.arbitration_id, at_s)
+            super().deliver(frame, at_s, own=False)
+            return
+        if self._faults.is_off:
+            return
         # What waits in the notebook keeps its stamp and grows old; what is made there is stamped then.
         queue, now_s = super().deliver, self._cable.now_s
         arrived = Frame(frame.arbitration_id, bytes(frame.data))
-        self._faults.carry(
-            "bus_in", arrived, lambda each: queue(each, at_s if each is arrived else max(at_s, now_s()), own=False)
-        )
+
+        def deliver(each: Frame) -> None:
+            self._faults.on_heard(each.arbitration_id, now_s())
+            queue(each, at_s if each is arrived else max(at_s, now_s()), own=False)
+
+        self._faults.carry("bus_in", arrived, lambda each: self._faults.carry("cable", each, deliver))
+
+    def hear(self, frame: Frame) -> None:
+        """Receive a frame of another node."""
+        super().deliver(frame, self._cable.now_s(), own=False)
+
+    def tell_error(self, frame_id: int) -> None:
+        """Deliver an error frame of this machine's CAN controller."""
+        error = can.Message(arbitration_id=frame_id, is_error_frame=True, data=bytes(8))
+        super().deliver(error, self._cable.now_s(), own=False)
 
 
 class EndFaults:
@@ -73,15 +107,25 @@ class EndFaults:
         """Callback with number and payload of each CONTROL that the driver sends."""
         self.on_arrived: Callable[[int, bytes, float], None] = lambda _number, _payload, _at_s: None
         """Callback with number, payload and time of arrival of each CONTROL that arrives at the robot."""
+        self.on_heard: Callable[[int, float], None] = lambda _frame_id, _at_s: None
+        """Callback with identifier and time of each frame that arrives at the notebook."""
         self.carried = 0
         """Number of the newest CONTROL that the cable carried."""
         self._time, self._injection = injection.time, injection
         self._codec, self._chance = codec, chance
-        self._board_of: dict[int, Target] = {codec.message("ENCODER").frame_id: "encoders"}
+        self._board_of: dict[int, Target] = {
+            codec.message("ENCODER").frame_id: "encoders",
+            codec.message("BUMPERC").frame_id: "bumpers",
+        }
+        self._end: _NotebooksEnd | None = None
+        self._held: dict[int, Frame] = {}
         for frame_id, message in codec.by_id.items():
             if message.name.startswith(("ADC", "BDC")):
                 self._board_of[frame_id] = "sensor_board_1" if message.name.startswith("ADC") else "sensor_board_2"
+        self._sound: dict[int, Frame] = {}
+        """Newest frame of each identifier while nothing failed."""
         self._newest: dict[tuple[Target, int], Frame] = {}
+        """Newest frame that passed a target since something fails."""
         self._passed_at_s: dict[tuple[Target, int], float] = {}
         self._next_out_s = 0.0
         self._sent = 0
@@ -95,7 +139,56 @@ class EndFaults:
         return self._cable.join(_RobotsEnd(self._cable, self))
 
     def open_notebooks_end(self, _: str) -> CableInterface:
-        return self._cable.join(_NotebooksEnd(self._cable, self))
+        self._end = _NotebooksEnd(self._cable, self)
+        return self._cable.join(self._end)
+
+    @property
+    def is_quiet(self) -> bool:
+        """True if no fault is planned or under way."""
+        return self._injection.is_quiet
+
+    def are_quiet_for(self, frame: can.Message) -> bool:
+        """Return whether nothing fails, and note the frame if so: most frames need no more."""
+        if not self._injection.is_quiet or not isinstance(frame, Frame):
+            return False
+        self._sound[frame.arbitration_id] = frame
+        if self._newest:
+            self._newest.clear()
+        return True
+
+    @property
+    def is_off(self) -> bool:
+        """True while the notebook's CAN controller is off the bus: it hears nothing, and what it sends stays in it."""
+        return self._injection.acting_on("controller") is not None and self._kind("controller") == "bus_off"
+
+    def begin(self, fault: Fault) -> None:
+        """Do what a fault does at its beginning: a controller leaves the bus, a stranger begins to send."""
+        if fault.kind == "bus_off" and self._end is not None:
+            self._end.tell_error(_BUS_OFF)
+        if fault.target == "stranger":
+            self._send_as_stranger(fault)
+
+    def finish(self, fault: Fault) -> None:
+        """Do what a fault does at its end: a controller comes back to the bus."""
+        if fault.kind == "bus_off" and self._end is not None:
+            self._end.tell_error(_RESTARTED)
+
+    def _send_as_stranger(self, fault: Fault) -> None:
+        """Send what only the robot should send, or anything, until the fault is over."""
+        now_s, chance = self._time.now_s(), self._chance
+        if now_s >= fault.end_s or self._end is None:
+            return
+        readings = list(self._sound.values())
+        if fault.kind == "telemetry" and readings:
+            self._end.hear(chance.choice(readings))
+        elif fault.kind == "garbage":
+            self._end.hear(Frame(chance.randrange(0x100, 0x800), chance.randbytes(chance.randrange(9))))
+        self._injection.acted.add(fault)
+        self._time.at(now_s + _STRANGER_EVERY_S, lambda: self._send_as_stranger(fault))
+
+    def _kind(self, target: Target) -> str:
+        fault = self._injection.of(target)
+        return "" if fault is None else fault.kind
 
     def carry_from_board(self, frame: Frame, send: Deliver) -> None:
         """Carry a frame of a board of the robot."""
@@ -118,7 +211,11 @@ class EndFaults:
                 return
             case "stuck":
                 # A stuck encoder repeats its count: no ticks since the last frame.
-                again = self._codec.message("ENCODER").pack(0, 0) if target == "encoders" else self._newest[key]
+                again = (
+                    self._codec.message("ENCODER").pack(0, 0)
+                    if target == "encoders"
+                    else self._newest.get(key, self._sound[frame.arbitration_id])
+                )
                 deliver(Frame(frame.arbitration_id, again.data))
             case "garbage":
                 deliver(Frame(frame.arbitration_id, self._chance.randbytes(len(frame.data))))
@@ -132,6 +229,25 @@ class EndFaults:
                     deliver(frame)
             case "delayed":
                 self._deliver_late(fault, now_s + fault.delay_s, lambda: deliver(frame))
+            case "pressed":
+                deliver(self._codec.by_id[frame.arbitration_id].pack(_FRONT_BUMPER, 0))
+            case "jump":
+                ticks = self._chance.choice((-_MOST_TICKS, _MOST_TICKS))
+                deliver(self._codec.by_id[frame.arbitration_id].pack(ticks, ticks))
+            case "lost" | "doubled" | "reordered":
+                self._carry_poorly(fault, frame, deliver)
+
+    def _carry_poorly(self, fault: Fault, frame: Frame, deliver: Deliver) -> None:
+        """Lose or double some frames, or let two with the same identifier change places."""
+        held = self._held.pop(frame.arbitration_id, None)
+        if fault.kind == "reordered" and held is None:
+            self._held[frame.arbitration_id] = frame
+            return
+        chosen = fault.kind != "reordered" and self._chance.random() < _SHARE
+        if not (chosen and fault.kind == "lost"):
+            deliver(frame)
+        if held is not None or (chosen and fault.kind == "doubled"):
+            deliver(held or frame)
 
     def _falsify(self, target: Target, frame: Frame) -> list[Frame]:
         """Return plausible, but false frames in place of a right one."""
@@ -152,6 +268,8 @@ class EndFaults:
             self.carried = number
             send(each)
 
+        if self.is_off:
+            return
         fault = self._injection.acting_on("bus_out")
         if fault is None:
             send_numbered(frame)
@@ -162,7 +280,8 @@ class EndFaults:
             case "stuck":
                 self._deliver_late(fault, fault.end_s, lambda: send_numbered(frame))
             case "garbage":
-                send_numbered(Frame(CONTROL_ID, self._chance.randbytes(len(frame.data))))
+                # Of no mode that moves it: a set point that chance makes is the cable's, and would be judged.
+                send_numbered(Frame(CONTROL_ID, b"\xee" + self._chance.randbytes(len(frame.data) - 1)))
             case "wrong":
                 send_numbered(Frame(_OTHER_ID, frame.data))
             case "slow":

@@ -2,9 +2,9 @@
 
 import pytest
 
-from tests.faults.drill import LOST_FRAMES, Outcome, Standstill
-from tests.faults.judge import judge
-from tests.faults.table import CASES, Row, case_of
+from tests.stories.drill import LOST_FRAMES, Outcome, Standstill
+from tests.stories.judge import judge
+from tests.stories.table import CASES, Row, case_of
 
 STOOD = Outcome(
     first=Standstill(0.105, ("ticks ceased",)),

@@ -1,5 +1,6 @@
 """Witness at both ends of the bus and of every tick: envelope, standing until told, and the ticks' accounts."""
 
+import hashlib
 from typing import NamedTuple
 
 from hal.robot import STANDSTILL, Robot, SensorReadings
@@ -8,11 +9,17 @@ from kurt2rt.core.teaching.commands import Resume
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.faulty_sensor import RobotProxy
 from kurt2rt.platform.tick_timer import TickTimer
-from tests.faults.envelope import Envelope, WheelCommand
-from tests.faults.rig import Rig
-from tests.faults.table import TABLE
+from tests.stories.envelope import Envelope, WheelCommand
+from tests.stories.rig import Rig
+from tests.stories.table import TABLE
 
 _ROUNDING_S = 1e-6
+_LOOKS_EVERY_S = 0.05
+_CLOCK_SETTLES_S = 0.1
+"""Time after the end of a clock's fault in which it may still jump, back to the truth."""
+_STANDS_M_S = 0.02
+_ROLLS_OUT_S = 0.8
+"""Time after the last set point in which wheels come to rest: the robot's own watchdog, and rolling out."""
 
 
 class StandstillInterval(NamedTuple):
@@ -39,9 +46,14 @@ class Witness(RobotProxy):
         self._arrivals: list[tuple[float, WheelCommand]] = []
         self._causes: list[tuple[float, tuple[str, ...]]] = []
         self._watches = False
-        self._sensed_at_s = 0.0
+        self._sensed_at_s = self._clock_faulty_until_s = 0.0
         self._must_stand = ""
+        self.digest = hashlib.sha256()
+        """Of all frames that were sent, and of their times."""
+        self._moved_at_s = 0.0
         rig.ends.on_sent, rig.ends.on_arrived = self._on_sent, self._on_arrived
+        rig.ends.on_heard = self.envelope.on_heard
+        rig.time.every(_LOOKS_EVERY_S, 0.0, self._look_at_the_wheels)
 
     def begin_program(self, robot: Robot) -> None:
         """Observe the driver of a new program, which must stand until it is resumed."""
@@ -63,7 +75,9 @@ class Witness(RobotProxy):
     def sense(self, now_s: float) -> SensorReadings:
         """Return the driver's readings; the age of the next decision counts from this call."""
         self._sensed_at_s = self._time.now_s()
-        self.envelope.clock_is_faulty = self._rig.injection.of("clock") is not None
+        if self._rig.injection.of("clock") is not None:
+            self._clock_faulty_until_s = self._sensed_at_s + _CLOCK_SETTLES_S
+        self.envelope.clock_is_faulty = self._sensed_at_s < self._clock_faulty_until_s
         readings = super().sense(now_s)
         self.envelope.bumper_pressed = readings.bumpers != 0
         return readings
@@ -125,15 +139,28 @@ class Witness(RobotProxy):
 
     def _on_sent(self, number: int, payload: bytes) -> None:
         now_s, robot = self._time.now_s(), self._rig.robot
+        self.digest.update(payload + round(now_s * 1e6).to_bytes(8, "big"))
         latched = None if robot is None else robot.health.latched
         if latched is not None and self._watches:
             self.latched = self.latched or (now_s, latched)
             self._causes.append((now_s, (latched,)))
         self.envelope.on_sent(number, now_s, payload, now_s - self._sensed_at_s, latched=latched is not None)
 
+    def _look_at_the_wheels(self) -> None:
+        """Complain of wheels that turn though nothing told them to for long; a broken motor may."""
+        now_s = self._time.now_s()
+        if any(self._rig.injection.of(side) is not None for side in ("left_motor", "right_motor")):
+            self._moved_at_s = now_s
+        turns = max(abs(each) for each in self._rig.simulation.wheel_speeds) > _STANDS_M_S
+        if turns and now_s - self._moved_at_s > _ROLLS_OUT_S:
+            self._complain(f"wheels turn {now_s - self._moved_at_s:.1f} s after the last set point")
+            self._moved_at_s = now_s
+
     def _on_arrived(self, number: int, payload: bytes, at_s: float) -> None:
         told = self.envelope.on_arrived(number, at_s, payload)
         if told is not None:
+            if not told.standing:
+                self._moved_at_s = at_s
             if not self._watches:
                 self._arrivals.clear()
             self._arrivals.append((at_s, told))

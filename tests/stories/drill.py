@@ -6,12 +6,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 from hal.kurt2_settings import Kurt2Settings
-from kurt2rt.core.teaching.commands import Command, Resume, Teach, Watch
+from kurt2rt.core.teaching.commands import Resume, Teach, Watch
 from kurt2rt.core.tick_record import TickRecord
-from tests.faults.program import TEACHER, Program
-from tests.faults.rig import CORRIDOR, ROBOT, Rig
-from tests.faults.table import TABLE, Case
-from tests.faults.witness import Witness
+from tests.stories.device import TEACHER, Device
+from tests.stories.program import Program
+from tests.stories.rig import CORRIDOR, ROBOT, Rig
+from tests.stories.table import TABLE, Case
+from tests.stories.witness import Witness
 
 LOST_FRAMES = "lost frames"
 """Key in `Outcome.counted` for frames missing in the CAN log."""
@@ -60,11 +61,16 @@ class _Drill:
         self._chance = random.Random(f"drill {case} {seed}")
         self.rig = Rig(settings, CORRIDOR, self._chance)
         self._witness = Witness(self.rig)
+        self._device = Device(self.rig.injection, self._chance)
         # The phases of ticks and fault against the controller's cycle.
         self.rig.time.run_until(self._chance.uniform(0.1, 0.9) * settings.cycle_s)
         begin_s = TABLE.schedule.begins_at_s + self._chance.uniform(0.0, settings.cycle_s)
         self._program = self._started(1)
-        self._fault = self._program.plan_fault(case, begin_s)
+        self._fault = case.at(begin_s, TABLE.schedule.lasts_s)
+        self._witness.watch()
+        self.rig.injection.plan(self._fault)
+        self._program.begin_fault(self._fault)
+        self._program.rehearse(case, self._fault)
         self._resume_at_s = self._fault.end_s + TABLE.schedule.settles_s
         self._latched: str | None = None
         self._counted: dict[str, int] = {}
@@ -84,16 +90,18 @@ class _Drill:
             self._program = self._started(2)
             await self._program.run(self._teach, lambda: time.now_s() >= over_at_s)
         outcome = self._outcome(program)
-        problems += self._program.end_fault()
+        problems += self._program.end_fault(self._fault)
         problems += self._program.close()
         return outcome._replace(problems=(*self._witness.complaints, *problems))
 
     def _started(self, number: int) -> Program:
-        program = Program(self.rig, self._witness, self._folder, number, self._chance, self._settings)
+        program = Program(
+            self.rig, self._witness, self._device, self._folder, number, self._chance, settings=self._settings
+        )
         program.put(Resume(program.next_id(), TEACHER))
         return program
 
-    def _teach(self, record: TickRecord) -> list[Command]:
+    def _teach(self, record: TickRecord) -> None:
         """Resume the robot when it is due, and answer a question while no fault is active."""
         program, now_s = self._program, self.rig.time.now_s()
         if not self._counted and now_s >= self._resume_at_s:
@@ -103,12 +111,14 @@ class _Drill:
             elif self._case.must.ends_by == "resume":
                 self.rig.set_down()  # a motor may have turned it towards the wall, where a bumper would hold it
                 program.runtime.reposition()
-                return [Resume(program.next_id(), TEACHER)]
+                program.put(Resume(program.next_id(), TEACHER))
+                return
         if program.hand is not None:
-            return []
+            return
         if record.decision.asking and not self._fault.begin_s <= now_s < self._resume_at_s:
-            return [Teach(program.next_id(), TEACHER, _ACTION)]
-        return [Watch(TEACHER, record.tick)]
+            program.put(Teach(program.next_id(), TEACHER, _ACTION))
+            return
+        program.put(Watch(TEACHER, record.tick))
 
     def _note_the_end(self) -> None:
         program, robot = self._program, self.rig.robot
@@ -139,7 +149,7 @@ class _Drill:
             drove_when_told=any(at_s > self._resume_at_s for at_s in witness.drove_at_s),
             old_frames=witness.envelope.old_frames,
             counted=self._counted,
-            acted=self.rig.injection.acted,
+            acted=self._fault in self.rig.injection.acted,
         )
 
 

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from hal.kurt2_settings import Kurt2Settings
 from simbridge.robot.wheels import Wheels
-from tests.faults.fault import FaultInjection
-from tests.faults.table import Target
+from tests.stories.fault import FaultInjection
+from tests.stories.table import Target
 
 _FASTEST_M_S = 0.9
 _TARGET_CYCLES = 40
@@ -64,6 +64,8 @@ class _Motor:
                 return _Command(self._slow_m_s, brake=False)
             case "delayed":
                 return self._commands[-min(len(self._commands), 1 + round(fault.delay_s / self._cycle_s))]
+            case _:
+                raise AssertionError(f"no fault of a motor: {fault}")
 
 
 class FaultyWheels(Wheels):

@@ -11,10 +11,10 @@ from hal.tap import Tap
 from hal.watchdog import POLL_S
 from simbridge.simulated_robot import SimulatedKurt2
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
-from tests.faults.cable import SOUND, CableFaults
-from tests.faults.fault import FaultInjection, SimulatedTime
-from tests.faults.faulty_cable import EndFaults
-from tests.faults.motors import FaultyWheels
+from tests.stories.cable import SOUND, CableFaults
+from tests.stories.fault import FaultInjection, SimulatedTime
+from tests.stories.faulty_cable import EndFaults
+from tests.stories.motors import FaultyWheels
 
 ROBOT: Kurt2Settings = load_kurt2()
 
@@ -62,10 +62,13 @@ class Rig:
         self.robot = Kurt2(self._settings, self._notebooks_bus, watchdog_clock=self.time.now_s)
         return self.robot
 
-    def end_driver(self) -> None:
-        if self.robot is not None:
+    def end_driver(self, *, killed: bool = False) -> None:
+        """End the driver; one that was `killed` sends nothing any more."""
+        if self.robot is not None and killed:
+            self._notebooks_bus.shutdown()
+        elif self.robot is not None:
             self.robot.close()
-            self.robot = None
+        self.robot = None
 
     def attach_tap(self, tap: Tap | None) -> None:
         """Let `tap` see each frame that passes the driver's interface."""

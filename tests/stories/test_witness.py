@@ -11,10 +11,11 @@ from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core import tick
 from kurt2rt.core.decision.decision import Decision, DecisionCause, Level
 from kurt2rt.core.perception.perception import Situation
-from tests.faults.program import Program
-from tests.faults.rig import CORRIDOR, ROBOT, Rig
-from tests.faults.table import case_of
-from tests.faults.witness import StandstillInterval, Witness
+from tests.stories.device import Device
+from tests.stories.program import Program
+from tests.stories.rig import CORRIDOR, ROBOT, Rig
+from tests.stories.table import case_of
+from tests.stories.witness import StandstillInterval, Witness
 
 AHEAD = WheelSpeeds(0.2, 0.2)
 
@@ -44,11 +45,11 @@ def witness(rig: Rig) -> Witness:
 
 @pytest.fixture
 def program(rig: Rig, witness: Witness, tmp_path: Path) -> Program:
-    return Program(rig, witness, tmp_path, 1, random.Random(1))
+    return Program(rig, witness, Device(rig.injection, random.Random(1)), tmp_path, 1, random.Random(1))
 
 
 async def run(program: Program, rig: Rig, until_s: float) -> None:
-    await program.run(lambda _: (), lambda: rig.time.now_s() >= until_s)
+    await program.run(lambda _: None, lambda: rig.time.now_s() >= until_s)
 
 
 @pytest.mark.parametrize("stops", [True, False])
@@ -94,6 +95,7 @@ async def test_an_error_in_the_loop_ends_the_program_and_says_where(rig: Rig, pr
 def test_standstills_cover_stop_and_silence(rig: Rig, witness: Witness) -> None:
     witness.begin_program(rig.start_driver())
     witness.watch()
+    witness.envelope.on_heard(5, 0.0)
     go, stand = bytes((0, 2, 0, 1, 0, 1, 0, 1)), bytes((0, 2, 0, 0, 0, 0, 0, 1))
     for at_s, payload in ((0.1, go), (0.2, go), (0.3, stand), (0.4, go), (0.9, go), (1.0, b"\xff" * 8), (1.05, go)):
         rig.time.run_until(at_s)
@@ -118,7 +120,7 @@ def test_each_go_on_a_blocked_bus_sends_two_old_frames_at_most(rig: Rig, witness
             witness.drive(AHEAD, rig.time.now_s(), rig.time.now_s())
 
     drive(1.0)
-    rig.injection.plan(case_of("bus_out", "delayed"), 1.0, 8.0)
+    rig.injection.plan(case_of("bus_out", "delayed").at(1.0, 8.0))
     for goes, until_s in enumerate((2.0, 3.0, 4.0), 1):
         drive(until_s)
         assert robot.health.latched == GuardReason.BUS_BLOCKED

@@ -6,10 +6,10 @@ import pytest
 
 from hal.guard_reason import GuardReason
 from kurt2rt.core.decision.decision import DecisionCause
-from tests.faults.drill import drilled
-from tests.faults.judge import judge
-from tests.faults.rig import ROBOT
-from tests.faults.table import CASES, KINDS, TABLE, TARGETS, Case, case_of
+from tests.stories.drill import drilled
+from tests.stories.judge import judge
+from tests.stories.rig import ROBOT
+from tests.stories.table import CASES, KINDS, TABLE, TARGETS, Case, case_of
 
 
 def is_quick(case: Case) -> bool:

@@ -6,12 +6,13 @@ from pathlib import Path
 import pytest
 
 from hal.control import Mode, SpeedControl, control_frame, encode_brake
-from tests.faults.drill import drilled
-from tests.faults.envelope import Envelope, decode_command
-from tests.faults.judge import judge
-from tests.faults.rig import ROBOT
-from tests.faults.table import TABLE, Kind, Target, case_of
+from tests.stories.drill import drilled
+from tests.stories.envelope import Envelope, decode_command
+from tests.stories.judge import judge
+from tests.stories.rig import ROBOT
+from tests.stories.table import TABLE, Kind, Target, case_of
 
+RANGE_FRAME = 5
 BRAKE = bytes(encode_brake().data)
 
 
@@ -36,9 +37,11 @@ class Drive:
         age_s: float = 0.0,
         latched: bool = False,
         late_s: float | None = 0.0,
+        heard_s: float = 0.0,
     ) -> "Drive":
         self.number += 1
         self.now_s += after_s
+        self.envelope.on_heard(RANGE_FRAME, self.now_s - heard_s)
         self.envelope.on_sent(self.number, self.now_s, payload, age_s, latched=latched)
         if late_s is not None:
             self.envelope.on_arrived(self.number, self.now_s + late_s, payload)
@@ -88,6 +91,7 @@ def test_it_reads_what_the_robot_reads() -> None:
         (Drive().to(1).on_sent(set_point(-1)), "left turns round from 0.01 to -0.01"),
         (Drive().to(10).on_sent(set_point(10), age_s=0.021), "a command 21.0 ms old"),
         (Drive().on_sent(struct.pack(">HhhH", 1, 10, 10, 1)), "no brake: 00 01 00 0a 00 0a 00 01"),
+        (Drive().to(10).on_sent(set_point(10), heard_s=0.081), "sensors were silent for 81 ms"),
         (Drive().on_sent(bytes(7)), "no brake: 00 00 00 00 00 00 00"),
         (Drive().on_sent(set_point(0), latched=True), "at 0.010 s: no brake though"),
         (two_lost(set_point(0), 1, 2).on_sent(set_point(9)), "left jumps from 0.00 to 0.09"),

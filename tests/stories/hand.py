@@ -6,15 +6,13 @@ from typing import Any
 
 from kurt2rt.channel.protocol.codec import decode_request, encode_request
 from kurt2rt.channel.protocol.requests import StreamRequest
-from kurt2rt.channel.server.channel import describe_robot
 from kurt2rt.channel.server.reply import Reply, ReplyStatus
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender
 from kurt2rt.core.message_fields import WireError
 from kurt2rt.core.teaching.commands import Drive
 from kurt2rt.core.teaching.message_fields import HIGHEST_SPEED_M_S
-from kurt2rt.service.assembly import RobotService
 from kurt2rt.teacher.client.manual_drive import BEAT_S
-from tests.faults.fault import FaultInjection
+from tests.stories.fault import FaultInjection
 
 DRIVER = "ann"
 _SPEEDS_M_S = (0.3, 0.28)
@@ -30,17 +28,15 @@ class Hand:
     and off.
     """
 
-    def __init__(self, service: RobotService, injection: FaultInjection, chance: random.Random, press_id: int) -> None:
-        """Begin to press; `press_id` is larger than that of any press before."""
+    def __init__(
+        self, handler: RequestHandler, boot: bytes, injection: FaultInjection, chance: random.Random, press_id: int
+    ) -> None:
+        """Begin to press; `press_id` is larger than that of any press before. `boot`: id of the program's start."""
         self.refused = 0
         """Messages that were not understood or refused."""
         self._press_id = press_id
         self._injection, self._time, self._chance = injection, injection.time, chance
-        dependencies = service.channel_dependencies()
-        self._boot = dependencies.boot
-        self._handler = RequestHandler(
-            service.runtime, dependencies, describe_robot(service.runtime, self._boot, simulated=True)
-        )
+        self._handler, self._boot = handler, boot
         self._number = 0
         self._newest = (0, b"")
         self._passed_at_s = 0.0
@@ -49,10 +45,6 @@ class Hand:
 
     def press_again(self) -> None:
         self._press_id += 1
-
-    def see(self, tick: int) -> None:
-        """Let the teacher's display show the state of this tick."""
-        self._handler.tick = tick
 
     def let_go(self) -> None:
         """Send no more messages."""
@@ -71,6 +63,9 @@ class Hand:
             self._arrive(*message)
             return
         match fault.kind:
+            case "sound":
+                self._newest = message
+                self._arrive(*message)
             case "off" | "intermittent":
                 return
             case "stuck":

@@ -1,14 +1,16 @@
 """Clock of the program in simulated time, which may fail."""
 
 import math
+from collections.abc import Callable
 
 from anyio.lowlevel import checkpoint
 
-from tests.faults.fault import FaultInjection
+from tests.stories.fault import FaultInjection
 
 _LOOK_S = 0.0005
 _LOST_SHARE = 0.5
 _WAITS_PER_CHECKPOINT = 100
+"""Waits between two in which other tasks may run, as long as none has work."""
 
 
 class BrokenClockError(OSError):
@@ -22,8 +24,9 @@ class FaultyClock:
     then stays lost. delayed: it lags. intermittent: it jumps ahead and back.
     """
 
-    def __init__(self, injection: FaultInjection) -> None:
-        self._injection, self._time = injection, injection.time
+    def __init__(self, injection: FaultInjection, tasks_wait: Callable[[], bool] = lambda: False) -> None:
+        """`tasks_wait`: whether another task has work, such as an answer to a teacher's device."""
+        self._injection, self._time, self._tasks_wait = injection, injection.time, tasks_wait
         self._lost_s = 0.0
         self._waits = 0
 
@@ -41,7 +44,7 @@ class FaultyClock:
             time.run_until(min(deadline_s + self._lost_s, fault.begin_s) if now_s < fault.begin_s else now_s + _LOOK_S)
         time.run_until(time.now_s() + deadline_s - self._shown_s())
         self._waits += 1
-        if self._waits % _WAITS_PER_CHECKPOINT == 0:
+        if self._waits % _WAITS_PER_CHECKPOINT == 0 or self._tasks_wait():
             await checkpoint()
 
     def repair(self) -> None:
@@ -54,7 +57,8 @@ class FaultyClock:
         if fault is None:
             return sound_s
         if fault.kind == "slow":
-            self._injection.acted = self._injection.acted or now_s > fault.begin_s
+            if now_s > fault.begin_s:
+                self._injection.acted.add(fault)
             return sound_s - _LOST_SHARE * max(0.0, min(now_s, fault.end_s) - fault.begin_s)
         if self._injection.acting_on("clock") is None:
             return sound_s
@@ -67,5 +71,5 @@ class FaultyClock:
                 return sound_s - fault.delay_s
             case "intermittent":
                 return sound_s + fault.delay_s
-            case "garbage":
+            case _:
                 return sound_s

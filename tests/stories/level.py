@@ -5,7 +5,7 @@ import math
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core.decision.decision import Decision, DecisionCause, Level
 from kurt2rt.core.perception.perception import Situation
-from tests.faults.fault import FaultInjection
+from tests.stories.fault import FaultInjection
 
 _TOO_FAST_M_S = 5.0
 _TURNS_ROUND_EVERY_S = 0.3

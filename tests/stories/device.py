@@ -1,0 +1,139 @@
+"""A teacher's device: commands as bytes, over a link that may fail, until the robot's answer comes."""
+
+import asyncio
+import itertools
+import random
+from dataclasses import fields, replace
+
+from kurt2rt.channel.protocol.codec import decode_request, encode_request
+from kurt2rt.channel.protocol.requests import Request, StopRequest, StreamRequest, TickRequest, tick_request
+from kurt2rt.channel.server.reply import Reply, ReplyStatus
+from kurt2rt.channel.server.request_handler import RequestHandler, Sender
+from kurt2rt.core.message_fields import WireError
+from kurt2rt.core.teaching.commands import Command, Stream
+from tests.stories.fault import FaultInjection
+
+TEACHER = "eve"
+_AGAIN_S = 0.3
+_MOST_TRIES = 20
+_SHARE = 0.4
+"""Share of the messages that a poor link loses, doubles or repeats later."""
+_OLD_S = 2.0
+_IDENTITY_BYTES = 8
+_OF_THE_DEVICE = ("command_id", "teacher", "seen_tick")
+"""Fields of a command that its device fills in."""
+Message = tuple[int, str, bytes]
+"""Sequence number, path and body."""
+
+
+class Device:
+    """Device of one teacher, who sees each tick's state at once.
+
+    Messages enter behind OSCORE, which would refuse copies, so that the rules after it must. off: none arrives. lost:
+    some do not. delayed: late. doubled: some twice. replayed: some again much later. garbage: random bytes.
+    """
+
+    def __init__(self, injection: FaultInjection, chance: random.Random) -> None:
+        self.saved: set[str] = set()
+        """Ids of the commands whose lesson the robot said to be durable."""
+        self.refused = 0
+        """Messages that were not understood or refused."""
+        self._injection, self._time, self._chance = injection, injection.time, chance
+        self._numbers = itertools.count(1)
+        self._handler: RequestHandler | None = None
+        self._boot = b""
+        self._tick = 0
+        self._open: dict[str, int] = {}
+        """Tries so far of each command without an answer."""
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    def connect(self, handler: RequestHandler, boot: bytes) -> None:
+        """Talk to another start of the program."""
+        self._handler, self._boot, self._tick = handler, boot, 0
+        self._open.clear()
+
+    def disconnect(self) -> None:
+        """The program is over: nothing is answered any more."""
+        self._handler = None
+        for task in self._tasks:
+            task.cancel()
+
+    async def wait(self) -> None:
+        """Wait until no answer is under way any more; call it after `disconnect`."""
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+
+    @property
+    def waits(self) -> bool:
+        """Return whether the robot works on an answer."""
+        return bool(self._tasks)
+
+    def see(self, tick: int) -> None:
+        """Let the teacher see the state of this tick."""
+        self._tick = tick
+
+    def send(self, command: Command) -> None:
+        """Send a message of a stream once, a command until it is answered."""
+        if isinstance(command, Stream):
+            request = StreamRequest(self._boot, replace(command, teacher=""))
+            self._pass((next(self._numbers), command.path, encode_request(request)))
+            return
+        identity = self._chance.randbytes(_IDENTITY_BYTES)
+        own = {each.name: getattr(command, each.name) for each in fields(command) if each.name not in _OF_THE_DEVICE}
+        body = encode_request(tick_request(type(command), self._boot, identity, self._tick, **own))
+        self._open[identity.hex()] = 0
+        self._try(identity.hex(), command.path, body)
+
+    def _try(self, identity: str, path: str, body: bytes) -> None:
+        tries = self._open.get(identity)
+        if tries is None or tries >= _MOST_TRIES:
+            self._open.pop(identity, None)
+            return
+        self._open[identity] = tries + 1
+        self._pass((next(self._numbers), path, body))
+        self._time.at(self._time.now_s() + _AGAIN_S, lambda: self._try(identity, path, body))
+
+    def _pass(self, message: Message) -> None:
+        """Send a message over the link."""
+        fault, now_s, chance = self._injection.acting_on("link"), self._time.now_s(), self._chance
+        chosen = fault is not None and chance.random() < _SHARE
+        match None if fault is None else fault.kind:
+            case "off":
+                return
+            case "lost" if chosen:
+                return
+            case "delayed":
+                assert fault is not None
+                self._time.at(now_s + chance.uniform(0.0, 2 * fault.delay_s), lambda: self._arrive(message))
+                return
+            case "garbage":
+                message = (message[0], message[1], chance.randbytes(chance.randint(0, 40)))
+            case "doubled" if chosen:
+                self._arrive(message)
+            case "replayed" if chosen:
+                self._time.at(now_s + chance.uniform(0.0, _OLD_S), lambda: self._arrive(message))
+        self._arrive(message)
+
+    def _arrive(self, message: Message) -> None:
+        handler = self._handler
+        if handler is None:
+            return
+        number, path, body = message
+        try:
+            request = decode_request(path, body)
+        except WireError:
+            self.refused += 1
+            return
+        task = asyncio.get_running_loop().create_task(self._answered(handler, Sender(TEACHER, b"", number), request))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _answered(self, handler: RequestHandler, sender: Sender, request: Request) -> None:
+        reply: Reply = await handler.answer(sender, request)
+        fault = self._injection.acting_on("link")
+        if fault is not None and (fault.kind == "off" or (fault.kind == "lost" and self._chance.random() < _SHARE)):
+            return  # the answer is lost, and the command will come again
+        self.refused += reply.status is not ReplyStatus.DONE
+        if isinstance(request, TickRequest | StopRequest):
+            self._open.pop(request.command_id.hex(), None)
+            if reply.status is ReplyStatus.DONE and reply.body.get("row") is not None:
+                self.saved.add(f"{TEACHER}-{request.command_id.hex()}")

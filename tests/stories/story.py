@@ -1,0 +1,121 @@
+"""A story: one robot, world, teacher and what goes wrong, told by a seed; and as a file of some lines."""
+
+import random
+from pathlib import Path
+
+import yaml
+
+from config.settings import Settings, load_settings
+from tests.stories.table import TABLE, Fault, Kind, Target
+
+CALM_S = 7.0
+"""Time at the end in which nothing fails any more, and the teacher is there."""
+FIRST_S = 1.0
+MOST_FAULTS = 12
+_SPANS_S = (0.2, 3.0)
+_GAP_S = 0.5
+"""Least time between two faults of one target."""
+
+
+class Teaching(Settings):
+    """Teacher of a story: phase, time of a reaction in s, and share of wrong answers."""
+
+    phase: int
+    reaction_s: float
+    error_rate: float
+
+
+class Event(Settings):
+    """Fault of a story, in s from its beginning."""
+
+    at_s: float
+    target: Target
+    kind: Kind
+    lasts_s: float
+
+    def fault(self) -> Fault:
+        """Return the fault, with period and delay of its row."""
+        row = TABLE.cases.get(self.target, {}).get(self.kind)
+        rare = TABLE.stories.get(self.target, {}).get(self.kind)
+        delay_s = row.delay_s if row is not None else 1.0 if rare is None else rare.delay_s
+        period_s = 1.0 if row is None else row.period_s
+        return Fault(self.target, self.kind, self.at_s, self.at_s + self.lasts_s, period_s, delay_s)
+
+
+class Story(Settings):
+    """All that a story is made of; equal stories end equal."""
+
+    seed: int
+    """Of everything that chance decides: body and sensors, noise, phases, frames that are lost."""
+    lasts_s: float
+    world: str = "a"
+    task: str = "wall_following"
+    taught: bool = False
+    """Whether the robot knows something at the beginning."""
+    records: bool = False
+    """Whether it is recorded, and replayed in the end."""
+    teaching: Teaching
+    faults: tuple[Event, ...] = ()
+
+    @property
+    def over_s(self) -> float:
+        """Time from which on nothing fails."""
+        return max((each.at_s + each.lasts_s for each in self.faults), default=0.0)
+
+
+def all_kinds() -> list[tuple[Target, Kind]]:
+    """Return each kind of fault of each target."""
+    return [(target, kind) for rows in (TABLE.cases, TABLE.stories) for target, kinds in rows.items() for kind in kinds]
+
+
+def because_of(target: Target, kind: Kind) -> frozenset[str]:
+    """Return the reasons for which a robot may stand because of a fault."""
+    row = TABLE.cases.get(target, {}).get(kind)
+    if row is not None:
+        return frozenset((*row.words, *row.also, *filter(None, (row.latches,))))
+    return frozenset(TABLE.stories[target][kind].because)
+
+
+def story_of(seed: int, lasts_s: float) -> Story:
+    """Return the story of a seed. It leaves out half of the kinds, so that some of the others meet often."""
+    chance = random.Random(f"story {seed}")
+    kinds = sorted(all_kinds())
+    kinds = chance.sample(kinds, len(kinds) // 2)
+    faults: list[Event] = []
+    busy: dict[Target, list[tuple[float, float]]] = {}
+    for _ in range(chance.randint(0, MOST_FAULTS)):
+        target, kind = chance.choice(kinds)
+        rare = TABLE.stories.get(target, {}).get(kind)
+        lasts = round(chance.uniform(*(_SPANS_S if rare is None else rare.lasts_s)), 3)
+        at = round(chance.uniform(FIRST_S, lasts_s - CALM_S - lasts), 3)
+        spans = busy.setdefault(target, [])
+        if all(at + lasts + _GAP_S < begin or at > end + _GAP_S for begin, end in spans):
+            spans.append((at, at + lasts))
+            faults.append(Event(at_s=at, target=target, kind=kind, lasts_s=lasts))
+    return Story(
+        seed=seed,
+        lasts_s=lasts_s,
+        world=chance.choice(("a", "a", "b", "c")),
+        task=chance.choice(("wall_following", "fleeing")),
+        taught=chance.random() < 0.5,
+        records=chance.random() < 0.1,
+        teaching=Teaching(
+            phase=chance.choice((1, 2, 2, 3, 4, 5)),
+            reaction_s=round(chance.uniform(0.2, 2.0), 2),
+            error_rate=chance.choice((0.0, 0.05, 0.2)),
+        ),
+        faults=tuple(sorted(faults, key=lambda each: each.at_s)),
+    )
+
+
+def load_story(path: Path) -> Story:
+    """Return the story of a file. Raises config.settings.SettingsError."""
+    return load_settings(path, Story)
+
+
+def as_text(story: Story) -> str:
+    """Return a story as a file, a line for each fault."""
+    plain = story.model_dump(mode="json")
+    faults = plain.pop("faults")
+    lines = "".join(f"- {yaml.safe_dump(each, default_flow_style=True, width=1000)}" for each in faults)
+    return yaml.safe_dump(plain, sort_keys=False) + (f"faults:\n{lines}" if faults else "")
