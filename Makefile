@@ -4,6 +4,7 @@
 # make trust  those tests twenty times, ten of them next to busy processors: two hours; RUNS=4 BUSY=2 does fewer
 # make size   token lines of each room, next to its budget and to the last commit
 # make kills  the robot program is killed over and over while it is taught; SHARD=2/8 does an eighth of 10 000
+# make stories  hours of many faults at once, each story told by a seed: an hour; ARGS='--hours 8 --stories 50000' a night
 # make equal-lessons  1000 whole lessons in the batch and on the CAN bus; SHARD=2/8 gives an eighth of them
 # make studies  the searches of config/searches again, from which settings come: hours
 # make wheelhouse  all packages of a robot as wheels, for x86-64 and aarch64, to install without a network: a minute
@@ -21,7 +22,7 @@ COMPILED := $(VENV)/compiled
 # All workers and the programs they start would each compile all of it anew on a machine that keeps no bytecode.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest
 
-.PHONY: run demo test trust test-deep guard mutants kills equal-lessons studies wheelhouse hil bench site lint types size clean
+.PHONY: run demo test trust test-deep guard mutants kills stories equal-lessons studies wheelhouse hil bench site lint types size clean
 
 run: $(INSTALLED)
 	$(BIN)/kurt2rt run --phone $(ARGS)
@@ -68,6 +69,10 @@ SHARD ?= 1/1
 KILLS ?= 10000
 kills: $(TESTED)
 	$(BIN)/python -m tests.crash.kills --kills $(KILLS) --shard $(SHARD)
+
+# What breaks is shrunk, and stands in var/stories; python -m tests.stories FILE drives it again.
+stories: $(TESTED)
+	$(BIN)/python -m tests.stories $(ARGS)
 
 # Two processors take three quarters of an hour.
 LESSONS ?= 1000

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from hal import points
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.channel.server.state_builder import basic_question
 from kurt2rt.core.decision.decision import withdrawn_rla_in
@@ -99,14 +100,15 @@ class PostTick:
         if self._health is not None:
             self._health.after_tick(record)
         speed = runtime.handler.authority.speed
-        saves = ticks % (self._checkpoint_ticks * speed) == 0
+        saves = ticks % (self._checkpoint_ticks * speed) == 0 or points.happens("statistics are saved now")
         if self._recorder is not None:
             # Before the tick's question and acknowledgements, so that both follow it in the recording.
             self._recorder.on_tick(record, saved=saves)
         if record.question_begins:
             self._ask(record)
-        for acknowledgement in self._writer.acknowledged():
-            self.on_acknowledged(acknowledgement)
+        if not points.happens("acknowledgements wait"):
+            for acknowledgement in self._writer.acknowledged():
+                self.on_acknowledged(acknowledgement)
         if saves:
             self.save_statistics()
         if ticks % (self._status_ticks * speed) == 0:

@@ -12,8 +12,8 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from simbridge.links import CanLine
 from simbridge.robot_simulation import Kurt2Simulation
-from tests.stories.cable import SOUND, Cable, CableFaults
 from tests.simbridge.rig import ROBOT
+from tests.stories.cable import SOUND, Cable, CableFaults
 
 TURN = WheelSpeeds(0.2, -0.2)
 TICK_S = ROBOT.cycle_s

@@ -16,7 +16,9 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import get_args
 
+from hal.points import Point
 from tests.stories.shrink import shrunk
 from tests.stories.story import Story, all_kinds, as_text, load_story, story_of
 from tests.stories.teller import Told, tell
@@ -89,12 +91,13 @@ def main() -> int:
     seeds = range(words.first, words.first + words.stories)
     in_time = (each for each in seeds if time.monotonic() < ends_s)
     stories = broken = ticks = lessons = starts = 0
-    acted: Counter[str] = Counter()
+    acted, happened = Counter[str](), Counter[str]()
     for outcome in drive_seeds(in_time, words.seconds, len(os.sched_getaffinity(0))):
         came = outcome.told
         stories += 1
         ticks, lessons, starts = ticks + came.ticks, lessons + came.lessons, starts + came.starts
         acted.update(came.acted)
+        happened.update(came.happened)
         if outcome.shortest is not None:
             broken += 1
             BROKEN.mkdir(parents=True, exist_ok=True)
@@ -109,6 +112,7 @@ def main() -> int:
     )
     never = [f"{target} {kind}" for target, kind in all_kinds() if not acted[f"{target} {kind}"]]
     print(f"never acted: {', '.join(never) or 'none'}")
+    print(f"points: {', '.join(f'{point} {happened[point]}' for point in get_args(Point))}")
     return bool(broken)
 
 

@@ -20,7 +20,6 @@ from kurt2rt.core.teaching.commands import Command, ReplaceAction, Stop, Take
 from kurt2rt.core.teaching.inbox import InboxFullError, PairingRenewed
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.loading import open_for_teaching
-from kurt2rt.platform.gc_control import gc_frozen
 from kurt2rt.runs.recording.recorder import RunRecorder
 from kurt2rt.runs.recording.recording import Recording, RunContext
 from kurt2rt.runs.recording.run_folder import budget_of
@@ -130,17 +129,16 @@ class Program:
             if is_over():
                 runtime.scheduler.end()
 
-        with gc_frozen():
-            try:
-                self._begun_s = self._clock.now_s()
-                await runtime.scheduler.run(None, after_tick)
-            except KilledError:
-                self.killed = True
-                return
-            except Exception as error:  # noqa: BLE001  # whatever a fault raised ends the program, and is judged
-                *_, where = traceback.extract_tb(error.__traceback__)
-                self.ended_by = f"{error!r} in {Path(where.filename).name}, line {where.lineno}"
-            self._witness.emergency_stop(GuardReason.SERVICE_ENDS)
+        try:
+            self._begun_s = self._clock.now_s()
+            await runtime.scheduler.run(None, after_tick)
+        except KilledError:
+            self.killed = True
+            return
+        except Exception as error:  # noqa: BLE001  # whatever a fault raised ends the program, and is judged
+            *_, where = traceback.extract_tb(error.__traceback__)
+            self.ended_by = f"{error!r} in {Path(where.filename).name}, line {where.lineno}"
+        self._witness.emergency_stop(GuardReason.SERVICE_ENDS)
 
     def close(self) -> list[str]:
         """End driver and files; return complaints about lost lessons and ticks. Raises KnowledgeError."""

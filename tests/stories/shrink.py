@@ -57,11 +57,14 @@ def _smaller(story: Story) -> Iterator[Story]:
         "world": "a",
         "taught": False,
         "records": False,
+        "points": (),
         "teaching": Teaching(phase=2, reaction_s=0.5, error_rate=0.0),
     }
     for name, value in plain.items():
         if getattr(story, name) != value:
             yield story.model_copy(update={name: value})
+    for point in story.points:
+        yield story.model_copy(update={"points": tuple(each for each in story.points if each != point)})
     shorter_s = round(story.over_s + CALM_S, 3)
     if story.faults and shorter_s < story.lasts_s:
         yield story.model_copy(update={"lasts_s": shorter_s})

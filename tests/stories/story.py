@@ -2,13 +2,15 @@
 
 import random
 from pathlib import Path
+from typing import get_args
 
 import yaml
 
 from config.settings import Settings, load_settings
+from hal.points import Point
 from tests.stories.table import TABLE, Fault, Kind, Target
 
-CALM_S = 7.0
+CALM_S = 6.0
 """Time at the end in which nothing fails any more, and the teacher is there."""
 FIRST_S = 1.0
 MOST_FAULTS = 12
@@ -54,6 +56,8 @@ class Story(Settings):
     """Whether the robot knows something at the beginning."""
     records: bool = False
     """Whether it is recorded, and replayed in the end."""
+    points: tuple[Point, ...] = ()
+    """Points of the program at which something happens now and then."""
     teaching: Teaching
     faults: tuple[Event, ...] = ()
 
@@ -86,7 +90,8 @@ def story_of(seed: int, lasts_s: float) -> Story:
     for _ in range(chance.randint(0, MOST_FAULTS)):
         target, kind = chance.choice(kinds)
         rare = TABLE.stories.get(target, {}).get(kind)
-        lasts = round(chance.uniform(*(_SPANS_S if rare is None else rare.lasts_s)), 3)
+        lasts = chance.uniform(*(_SPANS_S if rare is None else rare.lasts_s))
+        lasts = round(min(lasts, (lasts_s - CALM_S - FIRST_S) / 2), 3)
         at = round(chance.uniform(FIRST_S, lasts_s - CALM_S - lasts), 3)
         spans = busy.setdefault(target, [])
         if all(at + lasts + _GAP_S < begin or at > end + _GAP_S for begin, end in spans):
@@ -99,6 +104,7 @@ def story_of(seed: int, lasts_s: float) -> Story:
         task=chance.choice(("wall_following", "fleeing")),
         taught=chance.random() < 0.5,
         records=chance.random() < 0.1,
+        points=tuple(sorted(chance.sample(get_args(Point), chance.randint(0, len(get_args(Point)) // 2)))),
         teaching=Teaching(
             phase=chance.choice((1, 2, 2, 3, 4, 5)),
             reaction_s=round(chance.uniform(0.2, 2.0), 2),

@@ -3,11 +3,14 @@
 import asyncio
 import random
 import shutil
+from collections import Counter
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from hal import points
+from hal.points import Point, never
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import ASKING
 from kurt2rt.core.task_settings import TaskSettings, load_task
@@ -21,7 +24,7 @@ from tests.stories.device import Device
 from tests.stories.program import Program
 from tests.stories.rig import ROBOT, Rig
 from tests.stories.story import CALM_S, Event, Story, Teaching, because_of
-from tests.stories.table import Fault, case_of
+from tests.stories.table import TABLE, Fault, case_of
 from tests.stories.teacher import StoryTeacher
 from tests.stories.witness import Witness
 
@@ -32,8 +35,29 @@ _LASTING_S = 3.0
 """Time after a fault in which the robot may still stand because of it: until a teacher has said Go."""
 _ALWAYS = frozenset({"stopped", "unknown", "teacher", "unattended", "front bumper", "rear bumper", "touches", "blind"})
 """Reasons to stand that need no fault: a teacher's, a question, what is in the way; blind is told by its sensors."""
+_DROVE_S = 0.3
+_SHOWS_M_S = 0.2
+"""Slowest set point that shows whether wheels obey: in a narrow curve one side nearly stands."""
+_ROUNDING_S = 1e-6
 _STARTS_S = 0.1
 """Time after a start in which readings arrive."""
+_OFTEN: dict[Point, float] = {
+    "frames wait a cycle": 0.002,
+    "the send queue is full": 0.0005,
+    "a picture is old": 0.02,
+    "the nearest rules are forgotten": 0.01,
+    "statistics are saved now": 0.002,
+    "acknowledgements wait": 0.3,
+}
+"""Probabilities at points that are passed often."""
+_SOMETIMES = 0.15
+_BECAUSE: dict[Point, frozenset[str]] = {
+    "the send queue is full": frozenset({"bus lost"}),
+    "the disk is late": frozenset({"unsaved"}),
+    "the file is locked": frozenset({"unsaved"}),
+    "a durable commit fails": frozenset({"unsaved"}),
+}
+"""Reasons to stand because of what happens at a point."""
 _LIMITS = frozenset({"speed limit", "slew limit"})
 _KNOWN_SEED, _KNOWN_S = 0, 40.0
 
@@ -51,6 +75,8 @@ class Told:
     lessons: int = 0
     acted: set[str] = field(default_factory=set)
     """Faults that changed anything."""
+    happened: Counter[str] = field(default_factory=Counter)
+    """How often something happened at each point of the program."""
 
 
 class _Teller:
@@ -69,6 +95,7 @@ class _Teller:
         self._begun_s = 0.0
         self._works = False
         self._reasons: frozenset[str] = frozenset()
+        self._rare = random.Random(f"points {story.seed}")
         for event in story.faults:
             self._plan(event)
 
@@ -88,6 +115,14 @@ class _Teller:
         told.hash = digest.hexdigest()
         self._judge_saved()
         return told
+
+    def _happens(self, point: Point) -> bool:
+        """Return whether something happens at a point of the program now; none does at the end."""
+        if point not in self._story.points or self._time.now_s() >= self._story.lasts_s - CALM_S:
+            return False
+        happens = self._rare.random() < _OFTEN.get(point, _SOMETIMES)
+        self.told.happened[point] += happens
+        return happens
 
     async def _run_program(self) -> None:
         told, story, chance = self.told, self._story, self._chance
@@ -110,7 +145,11 @@ class _Teller:
                 program.begin_fault(fault)  # it was under way before this start
         self._ends, self._begun_s = False, self._time.now_s()
         teacher = StoryTeacher(program, self._task, story.teaching, chance)
-        await program.run(lambda record: self._after_tick(teacher, record), self._is_over)
+        points.happens = self._happens
+        try:
+            await program.run(lambda record: self._after_tick(teacher, record), self._is_over)
+        finally:
+            points.happens = never
         told.ticks += program.runtime.timer.ticks
         told.lessons += len(program.knowledge.submitted)
         if program.ended_by and not self._may_end():
@@ -120,10 +159,17 @@ class _Teller:
         await self._device.wait()
         if _open_files() > files or len(asyncio.all_tasks()) > tasks:
             told.problems.append("a file or a task was left open")
-        if program.recorded is not None and program.runtime.timer.ticks and not program.killed:
+        if self._can_be_replayed(program):
+            assert program.recorded is not None
             verdict = verify(read_run(program.recorded, partial=True))
             if not verdict.same:
                 told.problems.append(f"the replay differs after {verdict.ticks} ticks: {verdict.differences[0]}")
+
+    def _can_be_replayed(self, program: Program) -> bool:
+        """Return whether the recording of a program has all that it decided by: not what a fault put in its place."""
+        falsified = {"tick garbage", "tick wrong"} & {str(each) for each in self.rig.injection.acted}
+        is_whole = program.recorded is not None and program.runtime.timer.ticks > 0 and not program.killed
+        return is_whole and not falsified
 
     def _after_tick(self, teacher: StoryTeacher, record: TickRecord) -> None:
         now_s, story = self._time.now_s(), self._story
@@ -145,6 +191,8 @@ class _Teller:
         new, self._reasons = reasons - self._reasons, reasons
         for fault in self._begun:
             new -= because_of(fault.target, fault.kind)
+        for point in self._story.points:
+            new -= _BECAUSE.get(point, frozenset())
         if new and now_s - self._begun_s > _STARTS_S:
             self.told.problems.append(f"at {now_s:.2f} s: it stands because of {', '.join(sorted(new))}, why?")
 
@@ -156,6 +204,8 @@ class _Teller:
     def _begin(self, fault: Fault) -> None:
         self.rig.injection.plan(fault)
         self.rig.ends.begin(fault)
+        if all(each.end_s < fault.begin_s for each in self._begun):
+            self._witness.watch()
         self._begun.append(fault)
         match fault.target, fault.kind:
             case "controller", "restart":
@@ -169,10 +219,27 @@ class _Teller:
 
     def _end(self, fault: Fault) -> None:
         self.rig.ends.finish(fault)
+        self._judge(fault)
         if self._program is not None:
             self.told.problems += self._program.end_fault(fault)
         self.rig.injection.end(fault.target)
         self._time.at(fault.end_s + _LASTING_S, lambda: self._begun.remove(fault))
+
+    def _judge(self, fault: Fault) -> None:
+        """Complain unless the robot stood as the table demands, where nothing else failed and it drove before."""
+        row = TABLE.cases.get(fault.target, {}).get(fault.kind)
+        alone = all(each is fault or each.end_s < fault.begin_s - _LASTING_S for each in self._begun)
+        if row is None or row.leads_to != "stands" or not alone or self._begun_s > fault.begin_s - _DROVE_S:
+            return
+        witness, within_s = self._witness, row.latches_within_s or row.within_s or 0.0
+        slowest = min(witness.slowest_m_s(fault.begin_s - _DROVE_S, fault.begin_s + within_s), 1.0)
+        if slowest < _SHOWS_M_S or fault.end_s - fault.begin_s < within_s or not fault.acts(fault.begin_s):
+            return
+        if not witness.standstills(fault.begin_s, fault.end_s):
+            self.told.problems.append(f"{fault}: it did not stand")
+        latched = witness.latched
+        if row.latches is not None and (latched is None or latched[0] > fault.begin_s + within_s + _ROUNDING_S):
+            self.told.problems.append(f"{fault}: it was to be stopped because of {row.latches}, was {latched}")
 
     def _is_over(self) -> bool:
         return self._ends or self._time.now_s() >= self._story.lasts_s

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, get_args
 
+from hal import points
 from kurt2rt.channel.protocol.requests import (
     REQUESTS,
     Request,
@@ -65,6 +66,7 @@ def decode_request(path: str, payload: bytes) -> Request:
     """Return the request in a body; `path` is a key of PATHS. Raises WireError."""
     if path not in PATHS:
         raise WireError(f"there is no {path} here")
+    points.fail("a request is malformed", WireError, "it came in parts")
     body = decode_strictly(payload, most_bytes=MOST_REQUEST_BYTES, most_depth=_REQUEST_DEPTH)
     checks = BODIES[path]
     if not isinstance(body, list) or len(body) != len(checks):

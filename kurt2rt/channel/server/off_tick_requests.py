@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any, TypeVar
 
 from config.errors import UserError
+from hal import points
 from kurt2rt.channel.protocol.limits import MOST_UPLOAD_BYTES, PART_BYTES
 from kurt2rt.channel.protocol.requests import (
     PACKAGE,
@@ -72,7 +73,7 @@ class PendingCommands:
             waiting.set_result(reply)
 
     def _drop_oldest(self) -> None:
-        while len(self._replies) >= self._capacity:
+        while len(self._replies) >= self._capacity or points.happens("an answer is forgotten"):
             # A pending command must not be mistaken for a new one when its copy comes.
             oldest = next((command_id for command_id, reply in self._replies.items() if reply.done()), None)
             if oldest is None:

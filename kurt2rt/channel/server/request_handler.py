@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from hal import points
 from kurt2rt.channel.protocol.codec import FACTS
 from kurt2rt.channel.protocol.health import HEALTH
 from kurt2rt.channel.protocol.hello import HELLO, Hello
@@ -201,7 +202,8 @@ class RequestHandler:
         if boot != self._parts.boot:
             return restarted(self.tick)
         # The limits are in the teacher's real time, at any speed of a simulation.
-        if not 0 <= self.tick - seen <= longest * self._runtime.handler.authority.speed:
+        is_new = 0 <= self.tick - seen <= longest * self._runtime.handler.authority.speed
+        if not is_new or points.happens("a picture is old"):
             return refusal("stale", Outcome(RefusalCode.OLD_PICTURE), self.tick)
         return None
 

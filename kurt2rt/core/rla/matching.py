@@ -6,6 +6,8 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from hal import points
+
 pairwise_sum = np.add.reduce
 """Pairwise sum, in an order that numpy fixes (loops_utils) for all processors."""
 
@@ -207,6 +209,8 @@ class ConditionIndex:
 
         Returns None without conditions; of equally near conditions the older one is nearer.
         """
+        if points.happens("the nearest rules are forgotten"):
+            self._near = None
         if self._near is not None:
             nearest = self._near.nearest(situation)
             if nearest is not None:

@@ -4,6 +4,7 @@ from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from hal import points
 from kurt2rt.core.teaching.commands import Command, Stop
 
 
@@ -50,7 +51,8 @@ class TeacherInbox:
         if isinstance(command, PairingRenewed | RobotRepositioned | SpeedChanged):
             self._waiting.appendleft(command)  # it happened before the waiting commands act
             return
-        if len(self._waiting) >= self._capacity and not isinstance(command, Stop):
+        is_full = len(self._waiting) >= self._capacity or points.happens("the inbox is full")
+        if is_full and not isinstance(command, Stop):
             raise InboxFullError(
                 f"{self._capacity} commands wait already; is the robot's loop running? Send it again later"
             )

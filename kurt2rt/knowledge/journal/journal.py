@@ -7,6 +7,7 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import BinaryIO, Self
 
+from hal import points
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal import journal_file
@@ -283,10 +284,12 @@ class Journal:
     @contextmanager
     def _transaction(self) -> Iterator[None]:
         try:
+            points.fail("the file is locked", sqlite3.OperationalError, "database is locked")
             self._connection.execute("BEGIN IMMEDIATE")
             try:
                 yield
                 self._connection.execute("COMMIT")
+                points.fail("a durable commit fails", sqlite3.OperationalError, "disk I/O error")
             except BaseException:
                 if self._connection.in_transaction:  # SQLite itself may have rolled back already
                     self._connection.execute("ROLLBACK")

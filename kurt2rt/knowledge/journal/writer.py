@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Self
 
+from hal import points
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
@@ -222,8 +223,10 @@ class JournalWriter:
 
     def _try(self) -> bool:
         """Write everything sorted, and return whether the disk took it; `saving_error` holds the error."""
+        if points.happens("the disk is late"):
+            return False
         try:
-            if self._reconnects:
+            if self._reconnects or points.happens("the file is opened again"):
                 self._journal.reconnect()
                 self._reconnects = False
             self._write()
@@ -274,7 +277,7 @@ class JournalWriter:
             self._waiting = []
             for receipt in receipts:
                 self._acknowledge(_acknowledgement(receipt))
-        if self._statistics is not None:
+        if self._statistics is not None and not points.happens("statistics wait"):
             self._journal.checkpoint(self._statistics)
             self._statistics = None
         for flush in self._flushes:

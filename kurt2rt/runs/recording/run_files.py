@@ -6,6 +6,7 @@ from pathlib import Path
 
 from foxglove import Context
 
+from hal import points
 from kurt2rt.knowledge.exchange.attachments import ROBOT, TASK
 from kurt2rt.runs.recording.recording_disk import Disk, LockedFolder, RealDisk
 from kurt2rt.runs.recording.run_folder import MEGA, Budget, make_room, next_run_name, segment_name, used_bytes
@@ -66,7 +67,8 @@ class RunFiles:
                 return self._begin()
             self._segment.save()
             self._attached = True
-            if self._segment.size_bytes >= self._budget.segment_bytes:
+            is_full = self._segment.size_bytes >= self._budget.segment_bytes
+            if is_full or points.happens("a segment ends early"):
                 self._end()
                 return self._begin()
             return self._check_room()
