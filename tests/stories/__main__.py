@@ -26,12 +26,13 @@ from tests.stories.teller import Told, tell
 BROKEN = Path("var/stories")
 _MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 """Folder in memory, where a disk is faster than simulated time."""
+_TELLS_EVERY = 500
 _SECONDS_PER_HOUR, _TICKS_PER_S = 3600.0, 100
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What came of the story of a seed."""
+    """Result of the story of a seed."""
 
     seed: int
     told: Told
@@ -104,6 +105,8 @@ def main() -> int:
             file = BROKEN / f"{outcome.seed}.yaml"
             file.write_text(as_text(outcome.shortest), encoding="utf-8")
             print(f"{file}: {came.problems[0]}", flush=True)
+        if stories % _TELLS_EVERY == 0:
+            print(f"{stories} of {words.stories} stories told", flush=True)
     took_h = (time.monotonic() - begun_s) / _SECONDS_PER_HOUR
     hours = ticks / _TICKS_PER_S / _SECONDS_PER_HOUR
     print(

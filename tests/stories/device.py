@@ -53,7 +53,7 @@ class Device:
         self._open.clear()
 
     def disconnect(self) -> None:
-        """The program is over: nothing is answered any more."""
+        """End the talk with a program that is over."""
         self._handler = None
         for task in self._tasks:
             task.cancel()

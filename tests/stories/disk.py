@@ -31,7 +31,7 @@ class FaultyJournal(Journal):
 
     injection: FaultInjection
     dies: Kind | None = None
-    """Where the program is killed in the next write of lessons: before or after they are durable."""
+    """Kill during the next write of lessons: before or after they are durable; None without one."""
     is_sound = False
     """True at the end: no write fails any more."""
 

@@ -48,14 +48,14 @@ class Story(Settings):
     """All that a story is made of; equal stories end equal."""
 
     seed: int
-    """Of everything that chance decides: body and sensors, noise, phases, frames that are lost."""
+    """Seed of all that chance decides: body and sensors, noise, phases, frames that are lost."""
     lasts_s: float
     world: str = "a"
     task: str = "wall_following"
     taught: bool = False
-    """Whether the robot knows something at the beginning."""
+    """True if the robot knows something at the beginning."""
     records: bool = False
-    """Whether it is recorded, and replayed in the end."""
+    """True if it is recorded, and replayed in the end."""
     points: tuple[Point, ...] = ()
     """Points of the program at which something happens now and then."""
     teaching: Teaching

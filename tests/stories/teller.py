@@ -64,19 +64,19 @@ _KNOWN_SEED, _KNOWN_S = 0, 40.0
 
 @dataclass
 class Told:
-    """What came of a story."""
+    """Result of a story."""
 
     problems: list[str] = field(default_factory=list)
-    """What broke, in order; empty if everything held."""
+    """Broken rules, in order; empty if everything held."""
     hash: str = ""
-    """Of all set points, with their times, and of all lessons said to be durable."""
+    """Hash of all set points, with their times, and of all lessons said to be durable."""
     ticks: int = 0
     starts: int = 0
     lessons: int = 0
     acted: set[str] = field(default_factory=set)
     """Faults that changed anything."""
     happened: Counter[str] = field(default_factory=Counter)
-    """How often something happened at each point of the program."""
+    """Number of times that something happened at each point of the program."""
 
 
 class _Teller:
@@ -252,7 +252,7 @@ class _Teller:
         )
 
     def _set_free(self) -> None:
-        """A person puts it where it can drive."""
+        """Put it where it can drive, as a person does."""
         self.rig.set_down()
         if self._program is not None:
             self._program.runtime.reposition()
