@@ -11,7 +11,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -59,15 +59,14 @@ def drive_seed(seed: int, lasts_s: float) -> Outcome:
 
 
 def drive_seeds(seeds: Iterable[int], lasts_s: float, processes: int) -> Iterator[Outcome]:
-    """Yield what comes of the stories of these seeds, in their order, some processes at a time."""
+    """Yield what comes of the stories of these seeds, some processes at a time, as each is over."""
     seeds = iter(seeds)
     with ProcessPoolExecutor(processes) as pool:
-        waiting: list[Future[Outcome]] = [
-            pool.submit(drive_seed, each, lasts_s) for each in islice(seeds, 2 * processes)
-        ]
+        waiting = {pool.submit(drive_seed, each, lasts_s) for each in islice(seeds, 2 * processes)}
         while waiting:
-            yield waiting.pop(0).result()
-            waiting += [pool.submit(drive_seed, each, lasts_s) for each in islice(seeds, 1)]
+            done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+            yield from (each.result() for each in done)
+            waiting |= {pool.submit(drive_seed, each, lasts_s) for each in islice(seeds, len(done))}
 
 
 def drive_file(file: Path) -> int:

@@ -10,6 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from hal import points
+from hal.guard_reason import GuardReason
 from hal.points import Point, never
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import ASKING
@@ -39,6 +40,8 @@ _DROVE_S = 0.3
 _SHOWS_M_S = 0.2
 """Slowest set point that shows whether wheels obey: in a narrow curve one side nearly stands."""
 _ROUNDING_S = 1e-6
+_MANOEUVRE = 4.0
+"""Factor of the time in which wheels show that they disobey, for a robot that turns and stops in between."""
 _STARTS_S = 0.1
 """Time after a start in which readings arrive."""
 _OFTEN: dict[Point, float] = {
@@ -232,6 +235,8 @@ class _Teller:
         if row is None or row.leads_to != "stands" or not alone or self._begun_s > fault.begin_s - _DROVE_S:
             return
         witness, within_s = self._witness, row.latches_within_s or row.within_s or 0.0
+        if row.latches == GuardReason.WHEELS_DISOBEY:
+            within_s *= _MANOEUVRE  # until it is told to change its speed
         slowest = min(witness.slowest_m_s(fault.begin_s - _DROVE_S, fault.begin_s + within_s), 1.0)
         if slowest < _SHOWS_M_S or fault.end_s - fault.begin_s < within_s or not fault.acts(fault.begin_s):
             return
