@@ -101,9 +101,7 @@ class WallFollowing:
 
     def __init__(self, settings: WallFollowingSettings, infrared: InfraredSettings) -> None:
         distances = Distances(infrared)
-        self._front = distances.of(*FRONT)
-        self._edges = distances.of(FRONT_LEFT_EDGE, FRONT_RIGHT_EDGE)
-        self._left = distances.of(*LEFT_FRONT_TO_BACK)
+        self._look = distances.of(*FRONT, FRONT_LEFT_EDGE, FRONT_RIGHT_EDGE, *LEFT_FRONT_TO_BACK)
         front_m, *_, back_m = distances.ahead_m(*LEFT_FRONT_TO_BACK)
         self.thresholds = Thresholds(
             **settings.model_dump(exclude={"kind"}), near_m=infrared.near_m, baseline_m=front_m - back_m
@@ -111,7 +109,6 @@ class WallFollowing:
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
         """Return the name of the action for the counts of all sensors; `behaviour` is not used."""
-        front, left_1, mid_1, mid_2, left_2 = self._front(infrared_counts), *self._left(infrared_counts)
-        left_edge, right_edge = self._edges(infrared_counts)
-        action = choose_action(min(front), left_edge, right_edge, (left_1, mid_1, mid_2, left_2), self.thresholds)
-        return ACTIONS[action]
+        front_1, front_2, front_3, left_edge, right_edge, left_1, mid_1, mid_2, left_2 = self._look(infrared_counts)
+        front_m, left = min(front_1, front_2, front_3), (left_1, mid_1, mid_2, left_2)
+        return ACTIONS[choose_action(front_m, left_edge, right_edge, left, self.thresholds)]
