@@ -1,7 +1,8 @@
 """Batch of simulated robots (of contracts): their state is copied from fresh simulations on the CAN bus."""
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +11,9 @@ from hal.guard_limits import REASONS
 from hal.kurt2_settings import Kurt2Settings
 from simbridge.batch.asking import PythonMind
 from simbridge.batch.borders import area_of
+from simbridge.batch.compiled import with_types_of
 from simbridge.batch.contacts import ContactBody, SetPoints
-from simbridge.batch.drive import drive, finish_waiting, put_down
+from simbridge.batch.drive import drive, put_down
 from simbridge.batch.record import (
     BROKEN,
     CROWDED,
@@ -89,6 +91,7 @@ class RobotBatch:
         self._averages = empty_averages(len(simulated), self._knowledge.features)
         self._robots, self._world = build_robots(robot, simulated, minds, tables)
         self._first_rows = self._knowledge.first[tables]
+        self._parts = self._robots, self._world, self._laws, self._knowledge, self._averages
         # Views, because an item of a record takes Python ten times as long.
         fields = ("situation", "behaviour", "at", "left", "waits", "track_told_cm_s")
         self._situations, self._wanted, self._at, self._left, self._waits, self._told_cm_s = (
@@ -110,6 +113,10 @@ class RobotBatch:
         """Numbers that lie ahead of all robots, and how many are used of them: of slip, of the sensors."""
         self._longest = TRACED_TICKS if any(isinstance(mind, CommandedMind) for mind in minds) else STRETCH
 
+    @cached_property
+    def _drive(self) -> Callable[..., None]:
+        return with_types_of([drive], np.zeros(0, dtype=np.int64), 0, *self._parts)[0]
+
     def drive(self, robots: Sequence[int], ticks: int) -> list[int]:
         """Let these robots drive so many ticks on, at most the longest stretch, and return those that can go on.
 
@@ -126,7 +133,7 @@ class RobotBatch:
         self._robots["at"][chosen] = self._robots["crossed"][chosen] = self._caught_up[chosen] = 0
         active = chosen
         while len(active):
-            drive(active, ticks, self._robots, self._world, self._laws, self._knowledge, self._averages)
+            self._drive(active, ticks, *self._parts)
             self._python_mind.raise_error()
             active = active[self._waits[active] != 0]
             for r in active.tolist():
@@ -140,18 +147,12 @@ class RobotBatch:
         return [r for r in robots if not ended[r]]
 
     def _move_in_engine(self, r: int) -> None:
-        """Let the engine move the body of a robot that waits for it, and finish the robot's tick."""
+        """Let the engine move the body of a robot that waits for it."""
         end = self._at.item(r) + 1
         behind = self._set_points.take(r)
         behind += map(tuple, self._told_cm_s[r, self._caught_up[r] : end].tolist())
         self._bodies[r].move(self._robots[r], behind, self._gap_cycles)
         self._caught_up[r] = end
-        self._finish(r)
-
-    def _finish(self, r: int) -> None:
-        """Finish the tick of a robot whose body the engine has moved."""
-        finish_waiting(r, self._robots, self._world, self._laws, self._knowledge, self._averages)
-        self._python_mind.raise_error()
 
     def _decide(self, r: int) -> int:
         """Return the index of the action that the mind of a robot chooses, or STANDS."""

@@ -156,7 +156,8 @@ def keep_box(robot: Robot, law: BodyLaw) -> bool:
 
 @compiled
 def meet_box(robot: Robot, law: BodyLaw) -> None:
-    """Keep the box of a body after a tick in which the engine moved it; the engine knows this box already."""
+    """Keep the box of a body that the engine has moved, for which its robot waited; the engine knows this box."""
+    robot.waits = 0
     keep_box(robot, law)
     robot.box_is_new = 0
 

@@ -77,12 +77,16 @@ def drive(
 ) -> None:
     """Drive the robots of the indexes `active` to the end of a stretch of so many ticks.
 
-    A robot ends sooner that leaves the batch, is stuck, crosses a border, or waits for the physics engine.
+    A robot ends sooner that leaves the batch, is stuck, crosses a border, or waits for the physics engine. A robot that
+    waits has been moved by the engine, and finishes its tick first.
     """
     for place in range(active.shape[0]):
         robot = robots[active[place]]
         while robot.at < ticks and robot.left == STAYS and not robot.stuck and not robot.crossed:
-            begin_tick(robot, world, laws)
+            if robot.waits:
+                meet_box(robot, laws.body)
+            else:
+                begin_tick(robot, world, laws)
             if robot.waits:
                 break
             if robot.left == STAYS:
@@ -172,12 +176,3 @@ def trace(robot: Robot, k: int) -> None:
         robot.track_counts[k, i] = robot.counts[i]
     robot.track_left_ticks[k], robot.track_right_ticks[k] = robot.left_ticks, robot.right_ticks
     robot.track_bumpers[k], robot.track_limits[k] = robot.bumpers, robot.limits
-
-
-@compiled
-def finish_waiting(r: int, robots: Robots, world: World, laws: Laws, knowledge: Knowledge, averages: Averages) -> None:
-    """Run the rest of a tick for robot `r`, whose body the physics engine has moved."""
-    robot = robots[r]
-    robot.waits = 0
-    meet_box(robot, laws.body)
-    finish_tick(robot, world, laws, knowledge, averages)

@@ -73,8 +73,8 @@ class CompiledLesson(RobotBatch):
         """Tick up to which choices are valid, while ticks are driven a second time."""
         self._learner = Learner(np.zeros(width, dtype=np.int64), np.zeros(3, dtype=np.int64), np.zeros(1))
         self._robots["held"], self._robots["speed_share"] = -1, 1.0
-        self._parts = self._robots, self._world, self._laws, self._learner, self._table, self.log
-        self._perceive, self._sense, self._teach = with_types_of((perceive, sense, teach), *self._parts)
+        self._arrays = self._robots, self._world, self._laws, self._learner, self._table, self.log
+        self._perceive, self._sense, self._teach = with_types_of((perceive, sense, teach), *self._arrays)
         self.tick = 0
         """Tick that the robot has completed."""
         self._kept = 0
@@ -143,9 +143,10 @@ class CompiledLesson(RobotBatch):
     def sense(self) -> None:
         """Begin the next tick up to its situation; only after `keep`."""
         if not self.waits:
-            self._sense(*self._parts)
+            self._sense(*self._arrays)
         if self.waits:
             self._move_in_engine(0)
+            self._perceive(*self._arrays)
         self._keep_state()
 
     def run(self, until: int) -> int:
@@ -157,7 +158,7 @@ class CompiledLesson(RobotBatch):
             raise ValueError(f"{until - self._kept} ticks to take back: keep after {MOST_TICKS}")
         assert not self.waits, "sense before the next stretch"
         self._until[0] = until
-        self._teach(*self._parts)
+        self._teach(*self._arrays)
         self._python_mind.raise_error()
         self.tick = self._ticks.item(0) - bool(self._waits.item(0) or self._left.item(0))
         return self.tick
@@ -205,9 +206,6 @@ class CompiledLesson(RobotBatch):
             action = self._choose(self._behaviours[self._wanted.item(r)], situation)
             self._choices[tick] = STANDS if action is None else self.actions.index(action)
         return self._choices.item(tick)
-
-    def _finish(self, r: int) -> None:  # noqa: ARG002 - there is one robot
-        self._perceive(*self._parts)
 
     def _keep_state(self) -> None:
         self._saved[:] = self._state

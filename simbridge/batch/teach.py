@@ -82,7 +82,6 @@ def perceive(robots: Robots, world: World, laws: Laws, learner: Learner, table: 
     """Run a tick of the only robot of a batch from its new pose up to its situation, and log what it perceives."""
     robot = robots[0]
     if robot.waits:
-        robot.waits = 0
         meet_box(robot, laws.body)
     if not sense_tick(robot, world, laws):
         return
