@@ -42,7 +42,6 @@ from simbridge.contracts.batch import (
     Trace,
 )
 from simbridge.contracts.simulation import Pose, Poses
-from simbridge.robot.bumpers import CollisionCounter
 from simbridge.simulated_robot import SimulatedKurt2, hash_state
 
 _REASONS = {
@@ -93,8 +92,8 @@ class RobotBatch:
         self._first_rows = self._knowledge.first[tables]
         self._parts = self._robots, self._world, self._laws, self._knowledge, self._averages
         # Views, because an item of a record takes Python ten times as long.
-        fields = ("situation", "behaviour", "at", "left", "waits", "track_told_cm_s")
-        self._situations, self._wanted, self._at, self._left, self._waits, self._told_cm_s = (
+        fields = ("situation", "behaviour", "at", "left", "waits", "moved", "track_told_cm_s")
+        self._situations, self._wanted, self._at, self._left, self._waits, self._moved, self._told_cm_s = (
             np.asarray(self._robots[field]) for field in fields
         )
         # The bodies in the engine draw their slip themselves, when they catch up.
@@ -104,7 +103,6 @@ class RobotBatch:
         """Those of the earlier stretches that each body in the engine lags behind."""
         self._caught_up = np.zeros(len(simulated), dtype=np.int64)
         """Ticks of the present stretch that it has driven."""
-        self._gap_cycles = CollisionCounter(robot.cycle_s).gap_cycles
         self._drawn = [[slip.drawn - SLIP_AHEAD, noise.drawn - NOISE_AHEAD] for slip, noise in self._streams]
         """Numbers that each robot had drawn before those that lie ahead: of slip, of its sensors."""
         self._robots["slip_used"], self._robots["noise_used"] = SLIP_AHEAD, NOISE_AHEAD
@@ -149,9 +147,8 @@ class RobotBatch:
     def _move_in_engine(self, r: int) -> None:
         """Let the engine move the body of a robot that waits for it."""
         end = self._at.item(r) + 1
-        behind = self._set_points.take(r)
-        behind += map(tuple, self._told_cm_s[r, self._caught_up[r] : end].tolist())
-        self._bodies[r].move(self._robots[r], behind, self._gap_cycles)
+        behind = self._set_points.take(r, self._told_cm_s[r, self._caught_up[r] : end])
+        self._moved[r] = self._bodies[r].move(self._robots[r], behind)
         self._caught_up[r] = end
 
     def _decide(self, r: int) -> int:
@@ -231,9 +228,9 @@ class RobotBatch:
         assert not record["waits"]
         self._draw_noise(robot, STRETCH)
         record["x_m"], record["y_m"], record["heading_rad"] = pose
-        record["free_cycles"] = self._gap_cycles + 1
+        record["free_cycles"] = self._laws.body.gap_cycles + 1
         if not put_down(record, self._world, self._laws):
-            self._bodies[robot].put(pose, before, self._set_points.take(robot))
+            self._bodies[robot].put(pose, before, self._set_points.take(robot, self._told_cm_s[robot, :0]))
             record["box_is_new"] = 0
         restart_window(record, self._laws.stuck)
 

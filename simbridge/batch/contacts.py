@@ -1,13 +1,12 @@
 """Bodies of a batch at walls: there the physics engine moves the body, as it does on the CAN bus."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from simbridge.batch.compiled import compiled
-from simbridge.batch.laws import BodyLaw
+from simbridge.batch.laws import BodyLaw, Integers
 from simbridge.batch.record import Robot
 from simbridge.contracts.batch import BatchRefusedError
 from simbridge.contracts.simulation import Pose
@@ -29,50 +28,37 @@ class ContactBody:
         """Take the body, the wheels and the bumpers of a simulated robot that has not driven yet."""
         self._body, self._wheels, self._bumpers = simulated.body, simulated.wheels, simulated.bumpers
 
-    def move(self, record: np.record, behind: Sequence[tuple[int, int]], gap_cycles: int) -> None:
-        """Move the body through the ticks that it lags behind and the present one, and enter what it met.
+    def move(self, record: np.record, behind: Integers) -> tuple[float, ...]:
+        """Move the body through the ticks that it lags behind and the present one; return `Robot.moved`.
 
         Args:
             record: of the robot, in the tick for which it waits.
-            behind: set points of those ticks, left and right, in cm/s; the last ones are of the present tick.
-            gap_cycles: cycles without a touch after which a touch is a new collision.
+            behind: set points of those ticks, left and right, in cm/s, (n, 2); the last ones are of the present tick.
 
         Raises:
             BatchRefusedError: engine and compiled loop do not agree on this machine.
         """
-        *missed, present = self._left_out(record, behind)
+        *missed, present = self._left_out(record, behind).tolist()
         for left_cm_s, right_cm_s in missed:
             self._step(left_cm_s, right_cm_s)
-        if self._body.pose != (record["last_x_m"], record["last_y_m"], record["last_heading_rad"]):
+        body = self._body
+        if body.pose != (record["last_x_m"], record["last_y_m"], record["last_heading_rad"]):
             raise BatchRefusedError("the physics engine moves a free robot otherwise here", do="give --engine can")
         self._step(*present)
-        body = self._body
-        record["x_m"], record["y_m"], record["heading_rad"] = body.pose
-        record["vx_m_s"], record["vy_m_s"], record["yaw_rad_s"] = body.velocity
-        record["left_slip"], record["right_slip"] = body.slip
-        record["box_is_new"] = 0
-        record["bumpers"], record["touching"] = 0, body.touching
-        remembers = int(record["engine_ticks"])
-        if body.touching:
-            record["bumpers"] = self._bumpers.pressed(body.contacts())
-            record["collisions"] += record["free_cycles"] > gap_cycles
-            record["free_cycles"] = 0
-            record["engine_ticks"] = REMEMBERED_TICKS
-        else:
-            record["free_cycles"] += 1
-            record["engine_ticks"] = max(0, remembers - 1)
+        pressed = self._bumpers.pressed(body.contacts()) if body.touching else 0
+        return (*body.pose, *body.velocity, *body.slip, pressed, body.touching)
 
-    def put(self, pose: Pose, record: np.record, behind: Sequence[tuple[int, int]]) -> None:
+    def put(self, pose: Pose, record: np.record, behind: Integers) -> None:
         """Put the body at a pose in m and rad near the one before, wheels still; it drives what it lags behind first.
 
-        `record`: of the robot, still at its old pose. `behind`: set points of the ticks that it lags behind, in cm/s.
+        `record`: of the robot, at its old pose. `behind`: set points of ticks that it lags behind, in cm/s, (n, 2).
         """
-        for left_cm_s, right_cm_s in self._left_out(record, behind):
+        for left_cm_s, right_cm_s in self._left_out(record, behind).tolist():
             self._step(left_cm_s, right_cm_s)
         self._body.place(pose)
         self._wheels.halt()
 
-    def _left_out(self, record: np.record, behind: Sequence[tuple[int, int]]) -> Sequence[tuple[int, int]]:
+    def _left_out(self, record: np.record, behind: Integers) -> Integers:
         """Jump to the newest box around the body, and return the set points of the ticks since then."""
         if not record["box_is_new"]:
             return behind
@@ -112,16 +98,19 @@ class SetPoints:
         """
         self._stretches.append(({r: place for place, r in enumerate(robots.tolist())}, told_cm_s, driven, ends))
 
-    def take(self, robot: int) -> list[tuple[int, int]]:
-        """Return the set points in cm/s that the body of a robot has not driven yet; they are not returned again."""
+    def take(self, robot: int, present: Integers) -> Integers:
+        """Return the set points in cm/s that the body of a robot has not driven yet; they are not returned again.
+
+        `present`: those of the present stretch, which follow; (n, 2), as all.
+        """
         begin, self._taken[robot] = self._taken.get(robot, 0), len(self._stretches)
-        behind: list[tuple[int, int]] = []
+        behind: list[NDArray[np.int16]] = []
         for places, told_cm_s, driven, ends in self._stretches[begin:]:
             place = places.get(robot)
             if place is None:  # the robot did not drive in this stretch
                 continue
-            behind += map(tuple, told_cm_s[place, driven[place] : ends[place]].tolist())
-        return behind
+            behind.append(told_cm_s[place, driven[place] : ends[place]])
+        return np.concatenate((*behind, present))
 
 
 _WIDER = 0.1
@@ -155,9 +144,19 @@ def keep_box(robot: Robot, law: BodyLaw) -> bool:
 
 
 @compiled
-def meet_box(robot: Robot, law: BodyLaw) -> None:
-    """Keep the box of a body that the engine has moved, for which its robot waited; the engine knows this box."""
+def leave_engine(robot: Robot, law: BodyLaw) -> None:
+    """Enter the state of a body that the engine has moved, for which its robot waited; the engine knows its box."""
+    moved = robot.moved
     robot.waits = 0
+    robot.x_m, robot.y_m, robot.heading_rad = moved[0], moved[1], moved[2]
+    robot.vx_m_s, robot.vy_m_s, robot.yaw_rad_s = moved[3], moved[4], moved[5]
+    robot.left_slip, robot.right_slip = moved[6], moved[7]
+    robot.bumpers, robot.touching = int(moved[8]), int(moved[9])
+    if robot.touching:
+        robot.collisions += 1 if robot.free_cycles > law.gap_cycles else 0
+        robot.free_cycles, robot.engine_ticks = 0, REMEMBERED_TICKS
+    else:
+        robot.free_cycles, robot.engine_ticks = robot.free_cycles + 1, max(0, robot.engine_ticks - 1)
     keep_box(robot, law)
     robot.box_is_new = 0
 

@@ -5,7 +5,7 @@ import math
 from hal.numerics import cos_sin
 from simbridge.batch.borders import area_of, crosses
 from simbridge.batch.compiled import compiled
-from simbridge.batch.contacts import keep_box, meet_box
+from simbridge.batch.contacts import keep_box, leave_engine
 from simbridge.batch.decisions import COMMANDED, decide
 from simbridge.batch.laws import Averages, BodyLaw, Integers, Knowledge, Laws, World
 from simbridge.batch.record import BROKEN, CROWDED, FROZEN, STAYS, Robot, Robots, count_tick
@@ -84,7 +84,7 @@ def drive(
         robot = robots[active[place]]
         while robot.at < ticks and robot.left == STAYS and not robot.stuck and not robot.crossed:
             if robot.waits:
-                meet_box(robot, laws.body)
+                leave_engine(robot, laws.body)
             else:
                 begin_tick(robot, world, laws)
             if robot.waits:

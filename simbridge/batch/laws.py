@@ -43,6 +43,8 @@ class BodyLaw(NamedTuple):
     slip_gain: float
     half_length_m: float
     half_width_m: float
+    gap_cycles: int
+    """Cycles without a touch after which a touch is a new collision."""
 
 
 class SensorLaw(NamedTuple):

@@ -83,6 +83,8 @@ class Robot:
     """State of the body at the end of that tick, in the order of simbridge.robot.body.BodyState."""
 
     # Contacts, which the engine finds
+    moved: Annotated[Floats, (10,)]
+    """Pose, velocity, slip, pressed bumpers and touch of the body after a tick for which the robot waited."""
     engine_ticks: int
     """Ticks for which the engine has to move the body still, because it may remember a contact."""
     bumpers: int

@@ -91,6 +91,7 @@ def build_body_law(robot: Kurt2Settings, body: Body) -> BodyLaw:
         slip_gain=body.slip_gain,
         half_length_m=geometry.outline_length_m / 2,
         half_width_m=geometry.outline_width_m / 2,
+        gap_cycles=CollisionCounter(robot.cycle_s).gap_cycles,
     )
 
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from simbridge.batch.borders import crosses
 from simbridge.batch.compiled import compiled
-from simbridge.batch.contacts import meet_box
+from simbridge.batch.contacts import leave_engine
 from simbridge.batch.decisions import ask_python, feature_of, hold_or_change, right_action, step_action
 from simbridge.batch.drive import begin_tick, sense_tick
 from simbridge.batch.laws import Features, Floats, Integers, Laws, World
@@ -82,7 +82,7 @@ def perceive(robots: Robots, world: World, laws: Laws, learner: Learner, table: 
     """Run a tick of the only robot of a batch from its new pose up to its situation, and log what it perceives."""
     robot = robots[0]
     if robot.waits:
-        meet_box(robot, laws.body)
+        leave_engine(robot, laws.body)
     if not sense_tick(robot, world, laws):
         return
     tick, numbers, features = robot.tick, learner.numbers, table.features
