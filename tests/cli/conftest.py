@@ -1,3 +1,4 @@
+import shutil
 from pathlib import Path
 
 import pytest
@@ -17,3 +18,9 @@ def kurt2rt(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], 
 def lessons(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a knowledge file with some lessons; copy it to change it."""
     return teach(tmp_path_factory.mktemp("lessons") / "taught.knowledge", short_task(5.0, 3.0)).knowledge
+
+
+@pytest.fixture
+def mine(lessons: Path, tmp_path: Path) -> Path:
+    """Return a copy of the knowledge file, `mine.knowledge` in the temporary folder."""
+    return Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))

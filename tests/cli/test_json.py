@@ -1,7 +1,6 @@
 """--json in every command that reports: one JSON document on standard output, nothing else, and the same exit code."""
 
 import json
-from pathlib import Path
 
 import pytest
 
@@ -30,11 +29,6 @@ REPORTS: dict[tuple[str, ...], set[str]] = {
     ("knowledge", "contradictions", "mine.knowledge"): {"file", "rlas", "contradictions"},
     ("knowledge", "table", "mine.knowledge"): {"table", "sha256"},
 }
-
-
-@pytest.fixture
-def mine(lessons: Path, tmp_path: Path) -> None:
-    (tmp_path / "mine.knowledge").write_bytes(lessons.read_bytes())
 
 
 @pytest.mark.usefixtures("mine")

@@ -12,13 +12,12 @@ from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, RlaCreated, RlaRewarded
 from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.journal.writer import utc_now
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.cli.helpers import CommandLine
+from tests.knowledge.lessons import teach
 
 
 def folded(knowledge: Path) -> RlaSystem:
@@ -35,28 +34,23 @@ def folded(knowledge: Path) -> RlaSystem:
     ids=" ".join,
 )
 def test_reading_commands_leave_no_files(
-    kurt2rt: CommandLine, tmp_path: Path, lessons: Path, words: tuple[str, ...]
+    kurt2rt: CommandLine, tmp_path: Path, lessons: Path, mine: Path, words: tuple[str, ...]
 ) -> None:
-    mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
     what, *options = words
     assert kurt2rt("knowledge", what, mine, *options).exit_code == 0
     assert [each.name for each in tmp_path.iterdir()] == [mine.name]
     assert mine.read_bytes() == lessons.read_bytes()
 
 
-def test_undo_all_of_the_critic(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
-    mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
+def test_undo_all_of_the_critic(kurt2rt: CommandLine, mine: Path) -> None:
     before = folded(mine)
     first, second = before.rlas[:2]
     assert " critic " in kurt2rt.refused("knowledge", "undo", mine, "--teacher", "critic")
-    with Journal.read_only(mine) as look:
-        binding = look.binding
-    with Journal.open(mine, binding) as journal:
-        events = (
-            RlaRewarded(first.rla_id, -1, 10, _by_critic("blame"), (Credit(first.rla_id, -0.3),), said=-1),
-            ActionWithdrawn(second.rla_id, second.action, _by_critic("withdraw")),
-        )
-        journal.append([JournalEntry(event, utc_now()) for event in events])
+    teach(
+        mine,
+        RlaRewarded(first.rla_id, -1, 10, _by_critic("blame"), (Credit(first.rla_id, -0.3),), said=-1),
+        ActionWithdrawn(second.rla_id, second.action, _by_critic("withdraw")),
+    )
 
     listed = kurt2rt("knowledge", "lessons", mine, "--teacher", "critic").out
     assert listed.index("withdrawn") < listed.index("punished")
@@ -89,8 +83,7 @@ def test_table_unwritable_folder_is_refused(kurt2rt: CommandLine, tmp_path: Path
     assert f"{tmp_path / 'tables'}: " in kurt2rt.refused("knowledge", "table", lessons, "--out", tmp_path / "tables")
 
 
-def test_undo_then_redo_restores_the_lesson(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
-    mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
+def test_undo_then_redo_restores_the_lesson(kurt2rt: CommandLine, mine: Path) -> None:
     before = folded(mine)
     kurt2rt("knowledge", "undo", mine)
     assert f"(lesson {before.history.last_standing} " in kurt2rt("knowledge", "redo", mine).out
@@ -99,16 +92,11 @@ def test_undo_then_redo_restores_the_lesson(kurt2rt: CommandLine, tmp_path: Path
     assert "command line" not in kurt2rt("knowledge", "lessons", mine, "--limit", "1").out
 
 
-def test_copy_is_taught_and_merged(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
-    mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
+def test_copy_is_taught_and_merged(kurt2rt: CommandLine, tmp_path: Path, lessons: Path, mine: Path) -> None:
     other = Path(shutil.copy(lessons, tmp_path / "other.knowledge"))
-    with Journal.read_only(mine) as look:
-        binding = look.binding
     by_ann = replace(folded(mine).rlas[0], rla_id=1000, origin=Origin("new", "Ann", Phase.CORRECTIONS, 9))
-    with Journal.open(other, binding) as journal:
-        journal.append([JournalEntry(RlaCreated(by_ann), utc_now()), JournalEntry(_correction("right"), utc_now())])
-    with Journal.open(mine, binding) as journal:
-        journal.append([JournalEntry(_correction("left"), utc_now())])
+    teach(other, RlaCreated(by_ann), _correction("right"))
+    teach(mine, _correction("left"))
     before, whole = folded(mine).rlas, mine.read_bytes()
     left_out, would, nothing = kurt2rt("knowledge", "merge", mine, other, "--dry-run").out.splitlines()
     assert "RLA 1 corrected: right" in left_out
@@ -156,16 +144,11 @@ def test_export_is_imported(kurt2rt: CommandLine, lessons: Path) -> None:
     assert "torn.zip: " in kurt2rt.refused("knowledge", "import", "torn.zip", "--out", "k")
 
 
-def test_contradictions_name_the_odd_lesson(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
-    mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
+def test_contradictions_name_the_odd_lesson(kurt2rt: CommandLine, mine: Path) -> None:
     condition = folded(mine).rlas[0].condition
-    with Journal.read_only(mine) as journal:
-        binding = journal.binding
-    with Journal.open(mine, binding) as journal:
-        for n, action in enumerate(("forward",) * 5 + ("whirl_left",), 1):
-            origin = Origin(f"near-{n}", "Ann", Phase.SUPERVISED, n)
-            rla = Rla(1000 + n, (condition[0] + 5000.0 + n, *condition[1:]), action, None, origin)
-            journal.append([JournalEntry(RlaCreated(rla), utc_now())])
+    for n, action in enumerate(("forward",) * 5 + ("whirl_left",), 1):
+        origin = Origin(f"near-{n}", "Ann", Phase.SUPERVISED, n)
+        teach(mine, RlaCreated(Rla(1000 + n, (condition[0] + 5000.0 + n, *condition[1:]), action, None, origin)))
     shown = kurt2rt("knowledge", "contradictions", mine)
     assert shown.exit_code == 0
     odd, total = shown.out.splitlines()

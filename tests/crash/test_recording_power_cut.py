@@ -19,7 +19,6 @@ SMALL = Budget(10_000_000, segment_bytes=20_000, reserve_bytes=0)
 def recorded(folder: Path, disk: TracedDisk, seconds: int) -> list[int]:
     """Record some seconds in small files; return the ticks."""
     desk = RecordedDesk(folder, disk=disk, budget=SMALL)
-    desk.recorder.poll()
     for second in range(seconds):
         desk.second(counts=200 + second)
         disk.operations.append(Told(desk.recorder.written))

@@ -90,6 +90,13 @@ def append(path: Path, *events: TeachingEvent, binding: KnowledgeBinding = BINDI
         journal.append([JournalEntry(event, stamp) for event in events])
 
 
+def teach(path: Path, *events: TeachingEvent) -> None:
+    """Append events to a knowledge file that is there, whatever its task."""
+    with Journal.read_only(path) as journal:
+        binding = journal.binding
+    append(path, *events, binding=binding)
+
+
 def tamper(path: Path, *statements: str) -> None:
     """Execute SQL statements on a knowledge file, as no kurt2rt does."""
     with closing(sqlite3.connect(path)) as connection, connection:

@@ -47,7 +47,9 @@ class RecordedDesk:
         live: tuple[str, int] | None = None,
         opened: Callable[[LiveView], None] = lambda _: None,
         began_at_ns: int | None = BEGAN_AT_NS,
+        polled: bool = True,
     ) -> None:
+        """`polled`: the recorder has looked at the disk once."""
         self.desk = ChannelFixture()
         self.recorder: RunRecorder = open_run_recorder(
             recordings,
@@ -61,6 +63,8 @@ class RecordedDesk:
             capacity=capacity,
         )
         self.records: list[TickRecord] = []
+        if polled:
+            self.recorder.poll()
 
     def run(self, ticks: int, counts: int | None = None) -> None:
         for _ in range(ticks):
@@ -78,7 +82,6 @@ class RecordedDesk:
 def late_run(recordings: Path) -> Path:
     """Record a run whose first segments were deleted to make room; return its folder."""
     desk = RecordedDesk(recordings, budget=Budget(75_000, segment_bytes=20_000))
-    desk.recorder.poll()
     for second in range(15):
         desk.second(counts=200 + second)
     desk.recorder.close()
@@ -88,6 +91,5 @@ def late_run(recordings: Path) -> Path:
 def empty_run(recordings: Path) -> Path:
     """Record a run that ended before its first tick; return its folder."""
     desk = RecordedDesk(recordings)
-    desk.recorder.poll()
     desk.recorder.close()
     return recordings / NAME

@@ -12,41 +12,18 @@ from kurt2rt.runs.recording.foxglove_scene import ROBOT
 from kurt2rt.runs.recording.run_folder import segments_in
 from kurt2rt.runs.recording.segment_reader import LoggedMessage, SegmentReader
 from kurt2rt.runs.recording.topics import LOG, TICK
-from simbridge.contracts.simulation import SimulatedPlace, SimulatedPost, Wall, WorldPlan
+from tests.channel.grounds import Yard
 from tests.runs.recording.desk_recording import NAME, RecordedDesk
 
 LAYOUT: dict[str, Any] = json.loads((CONFIG_DIR / "foxglove" / "kurt2.json").read_text())
 PANELS: dict[str, dict[str, Any]] = LAYOUT["configById"]
 
 
-class Elsewhere:
-    """The ground under a simulated robot."""
-
-    def place(self) -> SimulatedPlace:
-        return SimulatedPlace(1.0, 2.0, 0.0, 0.0, 0, 0)
-
-    def world(self) -> WorldPlan:
-        corners = ((0.0, 0.0), (3.0, 0.0), (3.0, 0.1))
-        return WorldPlan(
-            0, "a", (3.0, 3.0), corners, (Wall("north", corners),), (SimulatedPost("post", 1.0, 1.0, 0.1),)
-        )
-
-    def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
-        raise AssertionError(name, dx_m, dy_m)
-
-    def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
-        raise AssertionError(x_m, y_m, heading_rad)
-
-    def put_robot_back(self) -> None:
-        raise AssertionError
-
-
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[LoggedMessage]:
     """Return the recorded messages of a simulated robot that learned two lessons."""
     folder: Path = tmp_path_factory.mktemp("runs")
-    desk = RecordedDesk(folder, world=Elsewhere())
-    desk.recorder.poll()
+    desk = RecordedDesk(folder, world=Yard())
     inbox = desk.desk.runtime.inbox
     desk.second(counts=200)
     inbox.put(Resume("r-1", "Ann"))

@@ -21,7 +21,6 @@ MESSAGE_DATA = 1
 def opened_desk(recordings: Path | None = None) -> tuple[RecordedDesk, LiveView]:
     views: list[LiveView] = []
     desk = RecordedDesk(recordings, live=(LOOPBACK, 0), opened=views.append)
-    desk.recorder.poll()
     (view,) = views
     return desk, view
 
@@ -85,7 +84,6 @@ def test_a_port_that_is_taken_is_told_and_tried_again(tmp_path: Path) -> None:
         taken.listen()
         port = taken.getsockname()[1]
         desk = RecordedDesk(tmp_path, live=(LOOPBACK, port))
-        desk.recorder.poll()
         desk.second()
         assert str(port) in desk.recorder.trouble
     desk.second()
@@ -97,7 +95,6 @@ def test_a_port_that_is_taken_is_told_and_tried_again(tmp_path: Path) -> None:
 def test_live_view_with_a_late_disk_loses_no_tick(tmp_path: Path) -> None:
     disk = AbsentDisk()
     desk = RecordedDesk(tmp_path, disk=disk, live=(LOOPBACK, 0))
-    desk.recorder.poll()
     desk.second()
     disk.there = True
     desk.second()

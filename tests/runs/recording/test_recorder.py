@@ -40,7 +40,6 @@ def entry_of(record: TickRecord) -> TickEntry:
 
 def test_every_tick_is_there_again_to_the_last_bit(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path)
-    desk.recorder.poll()
     desk.second(counts=200)
     desk.desk.runtime.inbox.put(Teach("t-1", "Ann", "forward"))
     desk.second(counts=203)
@@ -54,7 +53,6 @@ def test_every_tick_is_there_again_to_the_last_bit(tmp_path: Path) -> None:
 
 def test_recording_has_foxglove_scans_poses_scenes_and_log(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path)
-    desk.recorder.poll()
     desk.second(counts=200)
     desk.recorder.on_question("I know nothing yet, teach me")
     desk.recorder.on_acknowledged(Acknowledgement("t-1", 1, None, "2026-11-22T03:10:05.000+00:00"))
@@ -75,7 +73,6 @@ def test_recording_has_foxglove_scans_poses_scenes_and_log(tmp_path: Path) -> No
 
 def test_run_goes_on_in_a_next_segment_that_opens_alone(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path, budget=Budget(10_000_000, segment_bytes=20_000))
-    desk.recorder.poll()
     for second in range(8):
         desk.second(counts=200 + second)
     desk.recorder.close()
@@ -95,11 +92,9 @@ def test_run_goes_on_in_a_next_segment_that_opens_alone(tmp_path: Path) -> None:
 
 def test_older_runs_make_room_then_the_oldest_files_of_this_one(tmp_path: Path) -> None:
     older = RecordedDesk(tmp_path, name="20251231T235959Z-wall_following")
-    older.recorder.poll()
     older.second()
     older.recorder.close()
     desk = RecordedDesk(tmp_path, budget=Budget(75_000, segment_bytes=20_000))
-    desk.recorder.poll()
     for second in range(15):
         desk.second(counts=200 + second)
     desk.recorder.close()
@@ -113,10 +108,8 @@ def test_older_runs_make_room_then_the_oldest_files_of_this_one(tmp_path: Path) 
 
 def test_a_run_that_another_program_records_is_left_alone(tmp_path: Path) -> None:
     other = RecordedDesk(tmp_path, name="20251231T235959Z-wall_following")
-    other.recorder.poll()
     other.second()
     desk = RecordedDesk(tmp_path, budget=Budget(20_000, segment_bytes=10_000))
-    desk.recorder.poll()
     desk.second()
     other.second()
     desk.recorder.close()
@@ -127,7 +120,7 @@ def test_a_run_that_another_program_records_is_left_alone(tmp_path: Path) -> Non
 def test_a_disk_that_fails_once_costs_nothing(tmp_path: Path) -> None:
     for failing in range(6):
         failures = iter([*[None] * failing, OSError(errno.EIO, "input/output error")])
-        desk = RecordedDesk(tmp_path / str(failing), disk=FailingDisk(failures))
+        desk = RecordedDesk(tmp_path / str(failing), disk=FailingDisk(failures), polled=False)
         for _ in range(3):
             desk.second()
         desk.recorder.close()
@@ -153,7 +146,6 @@ class AbsentDisk(RealDisk):
 def test_a_disk_that_comes_later_gets_what_waited_for_it(tmp_path: Path) -> None:
     disk = AbsentDisk()
     desk = RecordedDesk(tmp_path, disk=disk)
-    desk.recorder.poll()
     desk.second()
     assert "absent" in desk.recorder.trouble
     disk.there = True
@@ -167,7 +159,6 @@ def test_a_disk_that_comes_later_gets_what_waited_for_it(tmp_path: Path) -> None
 def test_recorder_overrun_is_counted_and_shows_as_a_gap(tmp_path: Path) -> None:
     disk = AbsentDisk()
     desk = RecordedDesk(tmp_path, disk=disk, capacity=150)
-    desk.recorder.poll()
     desk.second()
     desk.second()
     assert desk.recorder.dropped == 50
@@ -194,7 +185,6 @@ class FullDisk(RealDisk):
 def test_the_last_room_on_the_disk_is_left_for_lessons(tmp_path: Path) -> None:
     disk = FullDisk(1_000_000_000)
     desk = RecordedDesk(tmp_path, disk=disk)
-    desk.recorder.poll()
     desk.second()
     assert desk.recorder.trouble == ""
     disk.free = 100_000_000
@@ -224,7 +214,7 @@ class HangingDisk(RealDisk):
 
 def test_the_loop_goes_on_while_the_disk_hangs(tmp_path: Path) -> None:
     disk = HangingDisk()
-    desk = RecordedDesk(tmp_path, disk=disk, capacity=120)
+    desk = RecordedDesk(tmp_path, disk=disk, capacity=120, polled=False)
     desk.recorder.start()
     desk.run(1)
     assert disk.hangs.wait(10.0)
@@ -238,7 +228,6 @@ def test_the_loop_goes_on_while_the_disk_hangs(tmp_path: Path) -> None:
 
 def test_a_run_that_is_deleted_while_it_is_recorded_begins_anew(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path / "runs")
-    desk.recorder.poll()
     desk.second()
     shutil.rmtree(tmp_path / "runs")
     desk.second()
@@ -254,7 +243,6 @@ def test_recorder_without_room_leaves_no_folder(tmp_path: Path) -> None:
     empty = tmp_path / "runs" / "20251231T235959Z-wall_following"
     empty.mkdir(parents=True)
     desk = RecordedDesk(tmp_path / "runs", disk=FullDisk(100))
-    desk.recorder.poll()
     desk.second()
     desk.recorder.close()
     assert " 0 MB" in desk.recorder.trouble
@@ -272,7 +260,6 @@ class WithoutNames(RealDisk):
 
 def test_a_run_of_which_no_file_could_be_made_leaves_no_folder(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path, disk=WithoutNames())
-    desk.recorder.poll()
     desk.second()
     desk.recorder.close()
     assert "input/output error" in desk.recorder.trouble
@@ -283,7 +270,6 @@ def test_a_run_of_which_no_file_could_be_made_leaves_no_folder(tmp_path: Path) -
 def test_the_end_that_the_disk_does_not_take_is_counted(tmp_path: Path) -> None:
     failures = iter([None, None, *[OSError(errno.ENOSPC, "no space left on device")] * 9])
     desk = RecordedDesk(tmp_path, disk=FailingDisk(failures))
-    desk.recorder.poll()
     desk.second()
     desk.recorder.close()
     assert (desk.recorder.written, desk.recorder.dropped) == (0, 100)
@@ -299,7 +285,7 @@ class Unsayable:
 
 
 def test_recorder_counts_an_unwritable_note_and_keeps_the_others(tmp_path: Path) -> None:
-    desk = RecordedDesk(tmp_path)
+    desk = RecordedDesk(tmp_path, polled=False)
     with desk.recorder:
         desk.run(50)
         desk.recorder.on_question(Unsayable())

@@ -15,7 +15,6 @@ from tests.runs.recording.desk_recording import NAME, RecordedDesk
 @pytest.fixture
 def whole(tmp_path: Path) -> Path:
     desk = RecordedDesk(tmp_path)
-    desk.recorder.poll()
     for second in range(4):
         desk.second(counts=200 + second)
     desk.recorder.close()

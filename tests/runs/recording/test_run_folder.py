@@ -22,7 +22,6 @@ from tests.runs.recording.desk_recording import RecordedDesk
 def recorded(recordings: Path, name: str) -> Path:
     """Record a run of one tick; return its folder."""
     desk = RecordedDesk(recordings, name=name)
-    desk.recorder.poll()
     desk.run(1)
     desk.recorder.close()
     return recordings / name

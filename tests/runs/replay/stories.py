@@ -76,6 +76,12 @@ class Scene:
         self.said += 1
         self.runtime.inbox.put(make(f"story-{self.said}"))
 
+    def let_teach(self, record: TickRecord) -> None:
+        """Let the teacher say what it has to say after a tick."""
+        command = self.teacher.update(view_of_tick(record))
+        if command is not None:
+            self.runtime.inbox.put(command)
+
 
 Story = Callable[[Scene, TickRecord], None]
 
@@ -91,9 +97,7 @@ def walls(scene: Scene, record: TickRecord) -> None:
     if tick % 5 == 0 and not at(20) < tick < at(21):  # for a second his line is dead
         runtime.inbox.put(Watch(NAME, tick))
     if tick < at(35):
-        command = scene.teacher.update(view_of_tick(record))
-        if command is not None:
-            runtime.inbox.put(command)
+        scene.let_teach(record)
     scene.notebook.saving_error = "the disk is full" if at(14) <= tick < at(14.4) else None
     if at(22) <= tick < at(23):
         runtime.inbox.put(Drive(NAME, tick, 1, 0.1, 0.2))
@@ -144,9 +148,7 @@ class Errand:
         said = self._guide.watch(record) if tick < at(34) else None
         if said is not None:
             inbox.put(said)
-        lesson = scene.teacher.update(view_of_tick(record))
-        if lesson is not None:
-            inbox.put(lesson)
+        scene.let_teach(record)
         if tick == at(22):
             scene.simulation.put(self._home)
             scene.runtime.reposition()

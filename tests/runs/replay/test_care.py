@@ -32,7 +32,6 @@ from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.trial import compatible_runs, newest_compatible_run
 from kurt2rt.runs.replay.undo_preview import preview, preview_on_newest
-from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from tests.cli.helpers import CommandLine
 from tests.knowledge.refusals import refused
 from tests.runs.replay.stories import NAME, Scene, record_story
@@ -49,9 +48,7 @@ def taught_at_once(scene: Scene, record: TickRecord) -> None:
     """Resume as soon as the robot runs, and answer each question."""
     if record.tick % 5 == 0:
         scene.runtime.inbox.put(Watch(NAME, record.tick))
-    answer = scene.teacher.update(view_of_tick(record))
-    if answer is not None:
-        scene.runtime.inbox.put(answer)
+    scene.let_teach(record)
     if record.tick == 10:
         scene.say(lambda name: BeginSession(name, NAME, "walls"))
         scene.say(lambda name: Resume(name, NAME))

@@ -15,7 +15,6 @@ from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
-from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from tests.runs.replay.stories import NAME, Scene, record_story
 
 ANSWERED = (50, 60, 60, 60)
@@ -28,9 +27,7 @@ def holding(scene: Scene, record: TickRecord) -> None:
     if tick % 5 == 0:
         inbox.put(Watch(NAME, tick))
     if tick < 500 or tick > 640:
-        command = scene.teacher.update(view_of_tick(record))
-        if command is not None:
-            inbox.put(command)
+        scene.let_teach(record)
     if 500 <= tick < 600:
         inbox.put(HoldAction(NAME, tick, 1, "curve_left" if tick < 560 else "curve_right"))
     match tick:

@@ -11,7 +11,6 @@ from kurt2rt.runs.explain.reasons import format_reasons
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
-from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from tests.runs.replay.stories import NAME, Scene, record_story
 
 
@@ -20,9 +19,7 @@ def slowly(scene: Scene, record: TickRecord) -> None:
     tick, inbox, say = record.tick, scene.runtime.inbox, scene.say
     if tick % 5 == 0:
         inbox.put(Watch(NAME, tick))
-    command = scene.teacher.update(view_of_tick(record))
-    if command is not None:
-        inbox.put(command)
+    scene.let_teach(record)
     match tick:
         case 10:
             say(lambda name: Resume(name, NAME))
