@@ -152,6 +152,14 @@ async def robot(pairing: Pairing) -> AsyncIterator[StandInRobot]:
         yield robot
 
 
+@pytest.fixture
+async def console(pairing: Pairing, robot: StandInRobot) -> AsyncIterator[Console]:
+    """Return the console of a teacher who has taken the robot."""
+    async with in_a_task_of_its_own(console_at(pairing, robot.port)) as console:
+        await console.reads("/take is done")
+        yield console
+
+
 async def looked_at(console: Console, robot: StandInRobot, **changes: object) -> int:
     """Send one more state; return its tick when the client has it."""
     robot.showing = False
@@ -160,105 +168,93 @@ async def looked_at(console: Console, robot: StandInRobot, **changes: object) ->
     return picture.tick
 
 
-async def test_why_explains_what_the_robot_does_now(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        console.type("why")
-        said = await console.reads(format_decision(FACTS_NOW))
+async def test_why_explains_what_the_robot_does_now(console: Console) -> None:
+    console.type("why")
+    said = await console.reads(format_decision(FACTS_NOW))
     assert "RLA 1" in said
 
 
-async def test_health_prints_the_report_and_cures(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        console.type("health")
-        await console.reads("sensors silent (urgent), ticks missed; late 2.90 ms (p99), missed 7")
-        await console.reads("disk      knowledge: 412 MB free, recordings: no answer")
-        await console.reads("!! the range sensors are silent, the newest is 2.5 s old (for 2 s): check that")
-        await console.reads("! 3 ticks missed in the last minute")
+async def test_health_prints_the_report_and_cures(console: Console) -> None:
+    console.type("health")
+    await console.reads("sensors silent (urgent), ticks missed; late 2.90 ms (p99), missed 7")
+    await console.reads("disk      knowledge: 412 MB free, recordings: no answer")
+    await console.reads("!! the range sensors are silent, the newest is 2.5 s old (for 2 s): check that")
+    await console.reads("! 3 ticks missed in the last minute")
 
 
-async def test_enter_stops_at_once_and_ends_pending_commands(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        robot.mind = RobotStub(Resume)
-        console.type("go")
-        await robot.hears(Resume)
-        console.type("")
-        await console.reads("refused: resume was stopped meanwhile")
-        await console.reads("/stop is done")
-        assert robot.all_of(StopRequest)[0].press_id is None
+async def test_enter_stops_at_once_and_ends_pending_commands(console: Console, robot: StandInRobot) -> None:
+    robot.mind = RobotStub(Resume)
+    console.type("go")
+    await robot.hears(Resume)
+    console.type("")
+    await console.reads("refused: resume was stopped meanwhile")
+    await console.reads("/stop is done")
+    assert robot.all_of(StopRequest)[0].press_id is None
 
 
-async def test_motion_typed_before_a_stop_is_not_sent_after_it(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        robot.mind = mind = RobotStub(LessonsRequest)
-        for line in ("lessons", "go", "step forward", "phase 5", "stop"):
-            console.type(line)
-        await console.reads("/stop is done")
-        mind.may_answer.set()
-        console.type("phase 2")
-        await console.reads("/phase is done")
-        for line in ("go", "step forward", "phase 5"):
-            assert any(said.startswith("not done") and said.endswith(f": {line}") for said in console.said)
-        assert robot.all_of(Resume) == []
-        assert [each.phase for each in robot.all_of(SetPhase)] == [Phase.CORRECTIONS]
+async def test_motion_typed_before_a_stop_is_not_sent_after_it(console: Console, robot: StandInRobot) -> None:
+    robot.mind = mind = RobotStub(LessonsRequest)
+    for line in ("lessons", "go", "step forward", "phase 5", "stop"):
+        console.type(line)
+    await console.reads("/stop is done")
+    mind.may_answer.set()
+    console.type("phase 2")
+    await console.reads("/phase is done")
+    for line in ("go", "step forward", "phase 5"):
+        assert any(said.startswith("not done") and said.endswith(f": {line}") for said in console.said)
+    assert robot.all_of(Resume) == []
+    assert [each.phase for each in robot.all_of(SetPhase)] == [Phase.CORRECTIONS]
 
 
-async def test_reward_has_the_tick_of_its_typing(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        robot.mind = mind = RobotStub(LessonsRequest)
-        ticks = []
-        for line, changes in (
-            ("lessons", {}),
-            ("+", {}),
-            ("-", {}),
-            ("forward", {"distance": 812.5, "radius": 600.0}),
-            ("spin_left", {"distance": 10.0}),
-        ):
-            ticks.append(await looked_at(console, robot, **changes))
-            console.type(line)
-            # A stop does not wait for its turn, so it tells that what stands before it has been read.
-            stops = len(robot.all_of(StopRequest))
-            console.type("stop")
-            await robot.hears(StopRequest, stops + 1)
-        await looked_at(console, robot, nearest=None)
-        mind.may_answer.set()
-        (correction,) = await robot.hears(Correct)
-        assert [(each.value, each.decision_tick) for each in robot.all_of(Reward)] == [
-            (1, ticks[1]),
-            (-1, ticks[2]),
-        ]
-        assert [(each.action, each.decision_tick) for each in robot.all_of(Teach)] == [("forward", ticks[3])]
-        assert (correction.action, correction.decision_tick) == ("spin_left", ticks[4])
+async def test_reward_has_the_tick_of_its_typing(console: Console, robot: StandInRobot) -> None:
+    robot.mind = mind = RobotStub(LessonsRequest)
+    ticks = []
+    for line, changes in (
+        ("lessons", {}),
+        ("+", {}),
+        ("-", {}),
+        ("forward", {"distance": 812.5, "radius": 600.0}),
+        ("spin_left", {"distance": 10.0}),
+    ):
+        ticks.append(await looked_at(console, robot, **changes))
+        console.type(line)
+        # A stop does not wait for its turn, so it tells that what stands before it has been read.
+        stops = len(robot.all_of(StopRequest))
+        console.type("stop")
+        await robot.hears(StopRequest, stops + 1)
+    await looked_at(console, robot, nearest=None)
+    mind.may_answer.set()
+    (correction,) = await robot.hears(Correct)
+    assert [(each.value, each.decision_tick) for each in robot.all_of(Reward)] == [
+        (1, ticks[1]),
+        (-1, ticks[2]),
+    ]
+    assert [(each.action, each.decision_tick) for each in robot.all_of(Teach)] == [("forward", ticks[3])]
+    assert (correction.action, correction.decision_tick) == ("spin_left", ticks[4])
 
 
-async def test_invalid_line_does_not_end_teaching(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        nines = "9" * 5000
-        for line in ("phase", f"step forward {nines}", "step forward 1e9"):
-            console.type(line)
-            await console.reads(f"not done, {line}: type {line.split()[0]} ")
-        for line, says in (
-            ("phase 12", "phase has to be one of 1, 2"),
-            (f"delete {nines}", "rla_id has to be a whole number"),
-            ("replace ² forward", "rla_id has to be a whole number"),
-        ):
-            console.said.clear()
-            console.type(line)
-            await console.reads(f"refused: {says}")
-        console.type("step forward 999999999")
-        await console.reads("refused: ticks has to be a whole number")
-        robot.mind = RobotStub(LessonsRequest)
-        console.client._open.sender.patience_s = 0.3
-        console.type("lessons")
-        await console.reads("no answer for 0.3 s")
-        be_patient(console.client)
-        console.type("phase 2")
-        await console.reads("/phase is done")
+async def test_invalid_line_does_not_end_teaching(console: Console, robot: StandInRobot) -> None:
+    nines = "9" * 5000
+    for line in ("phase", f"step forward {nines}", "step forward 1e9"):
+        console.type(line)
+        await console.reads(f"not done, {line}: type {line.split()[0]} ")
+    for line, says in (
+        ("phase 12", "phase has to be one of 1, 2"),
+        (f"delete {nines}", "rla_id has to be a whole number"),
+        ("replace ² forward", "rla_id has to be a whole number"),
+    ):
+        console.said.clear()
+        console.type(line)
+        await console.reads(f"refused: {says}")
+    console.type("step forward 999999999")
+    await console.reads("refused: ticks has to be a whole number")
+    robot.mind = RobotStub(LessonsRequest)
+    console.client._open.sender.patience_s = 0.3
+    console.type("lessons")
+    await console.reads("no answer for 0.3 s")
+    be_patient(console.client)
+    console.type("phase 2")
+    await console.reads("/phase is done")
 
 
 async def test_a_robot_that_is_not_there_ends_teaching(pairing: Pairing) -> None:
@@ -315,34 +311,30 @@ def test_wrong_word_is_named_with_what_may_be_meant(typed: str, says: str) -> No
     assert format_misunderstood(typed.split(), A_HELLO).startswith(says)
 
 
-async def test_appraisal_by_name_teaches_the_critic(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("appraisals: bad, neutral, good")
-        await console.reads("/take is done")
-        tick = await looked_at(console, robot, phase=4)
-        console.type("bad")
-        (taught,) = await robot.hears(Appraise)
-        assert (taught.appraisal, taught.decision_tick) == ("bad", tick)
-        console.type("help")
-        await console.reads("an appraisal ")
+async def test_appraisal_by_name_teaches_the_critic(console: Console, robot: StandInRobot) -> None:
+    await console.reads("appraisals: bad, neutral, good")
+    tick = await looked_at(console, robot, phase=4)
+    console.type("bad")
+    (taught,) = await robot.hears(Appraise)
+    assert (taught.appraisal, taught.decision_tick) == ("bad", tick)
+    console.type("help")
+    await console.reads("an appraisal ")
 
 
-async def test_critic_prints_trust_and_opinion(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        await looked_at(console, robot, phase=4, signals_missing=(6, 2))
-        await console.reads("critic: needs 6 bad and 2 good signals from you (not trusted)")
-        await looked_at(console, robot, agreement=0.87, trusted=True, signals_missing=(0, 0), opinion=1, opinion_of=40)
-        await console.reads("critic: agrees with you 0.87 (trusted)")
-        console.type("critic")
-        await console.reads("critic: thinks good · agrees with you 0.87 (trusted)")
-        await console.reads("critic: changed nothing lately")
-        await looked_at(console, robot, phase=5, role="measures", bad_share=0.0)
-        await console.reads("critic: agrees with you 0.87 (trusted; measures the driving)")
-        await looked_at(console, robot, role="not needed", bad_share=0.019)
-        await console.reads("critic: agrees with you 0.87 (trusted; not needed: 1 % of the driving was bad)")
-        await looked_at(console, robot, role="acts")
-        await console.reads("critic: agrees with you 0.87 (trusted; acts)")
+async def test_critic_prints_trust_and_opinion(console: Console, robot: StandInRobot) -> None:
+    await looked_at(console, robot, phase=4, signals_missing=(6, 2))
+    await console.reads("critic: needs 6 bad and 2 good signals from you (not trusted)")
+    await looked_at(console, robot, agreement=0.87, trusted=True, signals_missing=(0, 0), opinion=1, opinion_of=40)
+    await console.reads("critic: agrees with you 0.87 (trusted)")
+    console.type("critic")
+    await console.reads("critic: thinks good · agrees with you 0.87 (trusted)")
+    await console.reads("critic: changed nothing lately")
+    await looked_at(console, robot, phase=5, role="measures", bad_share=0.0)
+    await console.reads("critic: agrees with you 0.87 (trusted; measures the driving)")
+    await looked_at(console, robot, role="not needed", bad_share=0.019)
+    await console.reads("critic: agrees with you 0.87 (trusted; not needed: 1 % of the driving was bad)")
+    await looked_at(console, robot, role="acts")
+    await console.reads("critic: agrees with you 0.87 (trusted; acts)")
 
 
 def test_format_opinion_and_change_are_one_line_each() -> None:
@@ -353,67 +345,61 @@ def test_format_opinion_and_change_are_one_line_each() -> None:
     assert format_critic_change(changed._replace(undone=True)).endswith("stand, undone")
 
 
-async def test_behaviour_by_name_teaches_the_mid_level(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        robot.show(cause="unknown", asks_at="mid", mid=COMMANDS._replace(rla=None, distance=7.0, asks=True))
-        await console.reads("teach me which behaviour to follow: nearest is mid-level RLA 12 (turn_left) at 7 of 6")
-        console.type("turn_left")
-        await console.reads("/answer is done")
-        (answer,) = robot.all_of(Teach)
-        assert (answer.action, answer.level, answer.alternative) == ("turn_left", "mid", False)
-        robot.show(cause="rla", action="forward", rla=3, asks_at="basic", mid=COMMANDS)
-        await console.reads("turn_left because mid-level RLA 12: 2 of 12 differ, R 6")
-        console.type("straight_on")
-        await console.reads("/correct is done")
-        assert [(each.action, each.level) for each in robot.all_of(Correct)] == [("straight_on", "mid")]
-        console.type("also straight_on")
-        await robot.hears(Teach, 2)
-        assert robot.all_of(Teach)[-1].alternative
-        console.type("pursue straight_on")
-        await console.reads("/pursue is done")
-        robot.show(mid=COMMANDS._replace(behaviour="straight_on", rla=None, overridden=True))
-        await console.reads("straight_on, because a teacher said so, until it has finished")
-        console.type("way")
-        assert "left, straight, right, " in await console.reads("RLA 12 knows left, straight, left")
-        robot.show(surprise=SURPRISED._replace(tick=robot.state.tick, new=True))
-        assert "never followed" in await console.reads("surprise: 3.5 times as far off as usual")
+async def test_behaviour_by_name_teaches_the_mid_level(console: Console, robot: StandInRobot) -> None:
+    robot.show(cause="unknown", asks_at="mid", mid=COMMANDS._replace(rla=None, distance=7.0, asks=True))
+    await console.reads("teach me which behaviour to follow: nearest is mid-level RLA 12 (turn_left) at 7 of 6")
+    console.type("turn_left")
+    await console.reads("/answer is done")
+    (answer,) = robot.all_of(Teach)
+    assert (answer.action, answer.level, answer.alternative) == ("turn_left", "mid", False)
+    robot.show(cause="rla", action="forward", rla=3, asks_at="basic", mid=COMMANDS)
+    await console.reads("turn_left because mid-level RLA 12: 2 of 12 differ, R 6")
+    console.type("straight_on")
+    await console.reads("/correct is done")
+    assert [(each.action, each.level) for each in robot.all_of(Correct)] == [("straight_on", "mid")]
+    console.type("also straight_on")
+    await robot.hears(Teach, 2)
+    assert robot.all_of(Teach)[-1].alternative
+    console.type("pursue straight_on")
+    await console.reads("/pursue is done")
+    robot.show(mid=COMMANDS._replace(behaviour="straight_on", rla=None, overridden=True))
+    await console.reads("straight_on, because a teacher said so, until it has finished")
+    console.type("way")
+    assert "left, straight, right, " in await console.reads("RLA 12 knows left, straight, left")
+    robot.show(surprise=SURPRISED._replace(tick=robot.state.tick, new=True))
+    assert "never followed" in await console.reads("surprise: 3.5 times as far off as usual")
 
 
-async def test_places_are_named_and_sought(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        for line, path in (
-            ("name the door", "/name"),
-            ("seek the door", "/seek"),
-            ("seek rla 12", "/seek"),
-            ("seek x_m=1.8 y_m=-3 within 0.25", "/seek"),
-            ("here the door", "/here"),
-        ):
-            console.type(line)
-            await console.reads(f"{path} is done")
-        assert [each.name for each in robot.all_of(NameSituation)] == ["the door"]
-        name, rla, like = (each.goal for each in robot.all_of(Seek))
-        assert (name, rla) == (NamedGoal("the door"), RlaGoal(12))
-        assert like == PartialGoal((("x_m", 1.8), ("y_m", -3.0)), 0.25)
-        assert [each.name for each in robot.all_of(BeAt)] == ["the door"]
-        console.type("seek")
-        await robot.hears(StopSeeking)
-        console.type("places")
-        await console.reads("named: the door, the window")
-        robot.show(cause="no way", action=None, rla=None, goal="door", plan_says="no way from here to door")
-        await console.reads("Stands: no way from here to door")
-        console.type("seek x_m=high")  # no number: the name of a place, then
-        assert (await robot.hears(Seek, 4))[-1].goal == NamedGoal("x_m=high")
-        console.type("help")
-        await console.reads("seek FEATURE=VALUE")
+async def test_places_are_named_and_sought(console: Console, robot: StandInRobot) -> None:
+    for line, path in (
+        ("name the door", "/name"),
+        ("seek the door", "/seek"),
+        ("seek rla 12", "/seek"),
+        ("seek x_m=1.8 y_m=-3 within 0.25", "/seek"),
+        ("here the door", "/here"),
+    ):
+        console.type(line)
+        await console.reads(f"{path} is done")
+    assert [each.name for each in robot.all_of(NameSituation)] == ["the door"]
+    name, rla, like = (each.goal for each in robot.all_of(Seek))
+    assert (name, rla) == (NamedGoal("the door"), RlaGoal(12))
+    assert like == PartialGoal((("x_m", 1.8), ("y_m", -3.0)), 0.25)
+    assert [each.name for each in robot.all_of(BeAt)] == ["the door"]
+    console.type("seek")
+    await robot.hears(StopSeeking)
+    console.type("places")
+    await console.reads("named: the door, the window")
+    robot.show(cause="no way", action=None, rla=None, goal="door", plan_says="no way from here to door")
+    await console.reads("Stands: no way from here to door")
+    console.type("seek x_m=high")  # no number: the name of a place, then
+    assert (await robot.hears(Seek, 4))[-1].goal == NamedGoal("x_m=high")
+    console.type("help")
+    await console.reads("seek FEATURE=VALUE")
 
 
-async def test_hold_sends_the_action_for_its_time(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        console.type("hold spin_left 0.2")
-        stop = (await robot.hears(StopRequest))[-1]
-        holds = robot.all_of(HoldAction)
-        assert {(each.action, each.press_id) for each in holds} == {("spin_left", stop.press_id)}
-        assert len(holds) > 1
+async def test_hold_sends_the_action_for_its_time(console: Console, robot: StandInRobot) -> None:
+    console.type("hold spin_left 0.2")
+    stop = (await robot.hears(StopRequest))[-1]
+    holds = robot.all_of(HoldAction)
+    assert {(each.action, each.press_id) for each in holds} == {("spin_left", stop.press_id)}
+    assert len(holds) > 1
