@@ -6,61 +6,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.core.rla.condition import Condition
-from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.events import (
-    ActionReplaced,
-    ActionWithdrawn,
-    Appraised,
-    LessonRedone,
-    LessonUndone,
-    RlaCreated,
-    RlaDeleted,
-    RlaRewarded,
-    SessionBegun,
-    SessionEnded,
-    SituationNamed,
-    TeachingEvent,
-)
-from kurt2rt.core.rla.rla import MID, Origin, Phase, Rla
+from kurt2rt.core.rla.events import Appraised, LessonRedone, RlaCreated, SituationNamed, TeachingEvent
+from kurt2rt.core.rla.rla import MID, Phase
 from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
-from tests.knowledge.lessons import (
-    created,
-    deleted,
-    origin,
-    replaced,
-    rewarded,
-    session,
-    undone,
-    withdrawn,
-)
+from tests.knowledge.lessons import created, deleted, origin, replaced, rewarded, session, undone, withdrawn
 from tests.knowledge.refusals import refused
-
-texts = st.text(st.characters(codec="utf-8"), max_size=20)
-numbers = st.floats(allow_nan=False, allow_infinity=False)
-ids = st.integers(1, 2**62)
-origins = st.builds(Origin, texts, texts, st.sampled_from(Phase), st.integers(0, 2**62))
-opinions = st.sampled_from((-1, 0, 1))
-conditions = st.lists(numbers, max_size=80).map(tuple)
-rlas = st.builds(Rla, ids, conditions, texts, st.none() | numbers, origins, texts, texts)
-events = st.one_of(
-    st.builds(RlaCreated, rlas),
-    st.builds(ActionReplaced, ids, texts, texts, origins),
-    st.builds(RlaDeleted, ids, origins),
-    st.builds(ActionWithdrawn, ids, texts, origins),
-    st.builds(
-        RlaRewarded,
-        *(ids, st.sampled_from((1, -1)), st.integers(0, 2**62), origins),
-        st.lists(st.builds(Credit, ids, numbers), max_size=5).map(tuple),
-        st.none() | opinions,
-    ),
-    st.builds(Appraised, texts, opinions, st.integers(0, 2**62), origins),
-    st.builds(LessonUndone, texts, origins),
-    st.builds(LessonRedone, texts, origins),
-    st.builds(SituationNamed, texts, conditions, texts, origins),
-    st.builds(SessionBegun, texts, origins),
-    st.builds(SessionEnded, st.integers(0, 2**62), origins),
-)
+from tests.strategies import EVENTS
 
 NAMED = SituationNamed("door", (1.0, 2.0), MID, origin("name-1", 500))
 REDONE = LessonRedone("create-1", origin("redo-1", 510))
@@ -71,7 +23,7 @@ def bits(numbers: Condition) -> bytes:
     return struct.pack(f"{len(numbers)}d", *numbers)
 
 
-@given(events)
+@given(EVENTS)
 def test_encode_event_is_decoded_exactly(event: TeachingEvent) -> None:
     text = encode_event(event)
     again = decode_event(text, "here")
