@@ -49,7 +49,7 @@ class RecordedDesk:
         began_at_ns: int | None = BEGAN_AT_NS,
         polled: bool = True,
     ) -> None:
-        """`polled`: the recorder has looked at the disk once."""
+        """Open the recorder; with `polled`, it has looked at its disk once."""
         self.desk = ChannelFixture()
         self.recorder: RunRecorder = open_run_recorder(
             recordings,
