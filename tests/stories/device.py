@@ -2,6 +2,7 @@
 
 import asyncio
 import itertools
+import math
 import random
 from dataclasses import fields, replace
 
@@ -34,6 +35,8 @@ class Device:
     """
 
     def __init__(self, injection: FaultInjection, chance: random.Random) -> None:
+        self.heard_at_s = -math.inf
+        """Time at which the newest message that the robot understood arrived there."""
         self.saved: set[str] = set()
         """Ids of the commands whose lesson the robot said to be durable."""
         self.refused = 0
@@ -123,6 +126,7 @@ class Device:
         except WireError:
             self.refused += 1
             return
+        self.heard_at_s = self._time.now_s()
         task = asyncio.get_running_loop().create_task(self._answered(handler, Sender(TEACHER, b"", number), request))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)

@@ -15,6 +15,8 @@ _BRAKE_PAYLOAD = bytes((0, 0, 0x01, 0x03, 0xFF, 0x01, 0x03, 0xFF))
 """RAW, both sides: brake, no drive (docs/the-robot.md#control-modes)."""
 _RANGE_FRAMES = frozenset((5, 6, 7, 21, 22))
 """Identifiers of the frames that hold the 18 range sensors (docs/the-robot.md#messages)."""
+_FRONT, _REAR = 0b000111, 0b111000
+"""Bits of the bumpers at both ends."""
 _ROUNDING = 1e-6
 _MOST_UNDER_WAY = 2048
 """Frames in transit that are remembered; an older frame counts as lost."""
@@ -66,8 +68,8 @@ class Envelope:
         """Garbled frames that arrived; the robot ignores them."""
         self.clock_is_faulty = False
         """True while the driver's clock jumps: each frame may change speed by the longest step."""
-        self.bumper_pressed = False
-        """True while the driver reads a pressed bumper: the blocked wheels stop and may reverse at once."""
+        self.bumpers = 0
+        """Bits of the bumpers that the driver reads as pressed: blocked wheels stop and may reverse at once."""
         self._limits = limits
         self._in_transit: dict[int, _SentFrame] = {}
         self._heard_at_s: dict[int, float] = {}
@@ -89,7 +91,7 @@ class Envelope:
         """
         self.frames += 1
         told = decode_command(payload)
-        put = _SentFrame(at_s, age_s, told, self.bumper_pressed)
+        put = _SentFrame(at_s, age_s, told, self.bumpers != 0)
         self._in_transit[number] = put
         self._in_transit.pop(number - _MOST_UNDER_WAY, None)
         if told is None:
@@ -97,6 +99,9 @@ class Envelope:
             return
         if not told.standing and not age_s <= self._limits.command_age_s + _ROUNDING:
             self._complain(at_s, f"a command {age_s * 1000:.1f} ms old")
+        fastest_m_s, slowest_m_s = max(told.left_m_s, told.right_m_s), min(told.left_m_s, told.right_m_s)
+        if (self.bumpers & _FRONT and fastest_m_s > 0.0) or (self.bumpers & _REAR and slowest_m_s < 0.0):
+            self._complain(at_s, f"pushes on towards the bumpers {self.bumpers:06b}")
         senses_age_s = at_s - min(self._heard_at_s.values(), default=-math.inf)
         if not told.standing and senses_age_s > self._limits.senses_age_s + _ROUNDING:
             self._complain(at_s, f"moves though range sensors were silent for {senses_age_s * 1000:.0f} ms")

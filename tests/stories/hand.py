@@ -1,5 +1,6 @@
 """A second teacher who drives by hand over a link that may fail."""
 
+import math
 import random
 from collections.abc import Coroutine
 from typing import Any
@@ -32,6 +33,8 @@ class Hand:
         self, handler: RequestHandler, boot: bytes, injection: FaultInjection, chance: random.Random, press_id: int
     ) -> None:
         """Begin to press; `press_id` is larger than that of any press before. `boot`: id of the program's start."""
+        self.heard_at_s = -math.inf
+        """Time at which the newest message that the robot understood arrived there."""
         self.refused = 0
         """Messages that were not understood or refused."""
         self._press_id = press_id
@@ -94,6 +97,7 @@ class Hand:
         except WireError:
             self.refused += 1
             return
+        self.heard_at_s = self._time.now_s()
         reply = _at_once(self._handler.answer(Sender(DRIVER, b"", number), request))
         self.refused += reply.status is not ReplyStatus.DONE
 

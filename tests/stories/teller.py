@@ -1,6 +1,7 @@
 """Drives a story and judges it: what must hold whatever fails, by code that shares nothing with the guard."""
 
 import asyncio
+import math
 import random
 import shutil
 from collections import Counter
@@ -14,6 +15,7 @@ from hal.guard_reason import GuardReason
 from hal.points import Point, never
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import ASKING
+from kurt2rt.core.rla.rla import AUTONOMOUS
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
@@ -40,6 +42,8 @@ _DROVE_S = 0.3
 _SHOWS_M_S = 0.2
 """Slowest set point that shows whether wheels obey: in a narrow curve one side nearly stands."""
 _ROUNDING_S = 1e-6
+_SILENT_S = 0.35
+"""Time after the teachers' last message in which the robot may drive, before phase 5."""
 _MANOEUVRE = 4.0
 """Factor of the time in which wheels show that they disobey, for a robot that turns and stops in between."""
 _STARTS_S = 0.1
@@ -185,7 +189,15 @@ class _Teller:
         moves = record.guard_result.wheel_speeds != STANDSTILL
         if now_s <= max(over_s, story.lasts_s - CALM_S) + WORKS_AGAIN_S:
             self._works = now_s >= over_s and (self._works or moves or record.decision.cause in ASKING)
+        if moves and story.teaching.phase < AUTONOMOUS and now_s - self._heard_at_s() > _SILENT_S:
+            told_s = now_s - self._heard_at_s()
+            self.told.problems.append(f"at {now_s:.2f} s: it drives {told_s:.2f} s after its teachers' last message")
         self._explain(record, now_s)
+
+    def _heard_at_s(self) -> float:
+        """Return the time at which the newest message of any teacher arrived."""
+        hand = None if self._program is None else self._program.hand
+        return max(self._device.heard_at_s, -math.inf if hand is None else hand.heard_at_s)
 
     def _explain(self, record: TickRecord, now_s: float) -> None:
         """Complain of a new reason to stand that no fault gives; one that holds on was explained as it came."""
@@ -232,7 +244,9 @@ class _Teller:
         """Complain unless the robot stood as the table demands, where nothing else failed and it drove before."""
         row = TABLE.cases.get(fault.target, {}).get(fault.kind)
         alone = all(each is fault or each.end_s < fault.begin_s - _LASTING_S for each in self._begun)
-        if row is None or row.leads_to != "stands" or not alone or self._begun_s > fault.begin_s - _DROVE_S:
+        # A disk stops it only by a lesson, a hand only one that drives.
+        judged = row is not None and row.leads_to == "stands" and fault.target not in ("disk", "teacher_link")
+        if row is None or not judged or not alone or self._begun_s > fault.begin_s - _DROVE_S:
             return
         witness, within_s = self._witness, row.latches_within_s or row.within_s or 0.0
         if row.latches == GuardReason.WHEELS_DISOBEY:

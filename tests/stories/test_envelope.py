@@ -38,7 +38,9 @@ class Drive:
         latched: bool = False,
         late_s: float | None = 0.0,
         heard_s: float = 0.0,
+        bumpers: int = 0,
     ) -> "Drive":
+        self.envelope.bumpers = bumpers
         self.number += 1
         self.now_s += after_s
         self.envelope.on_heard(RANGE_FRAME, self.now_s - heard_s)
@@ -92,6 +94,8 @@ def test_it_reads_what_the_robot_reads() -> None:
         (Drive().to(10).on_sent(set_point(10), age_s=0.021), "a command 21.0 ms old"),
         (Drive().on_sent(struct.pack(">HhhH", 1, 10, 10, 1)), "no brake: 00 01 00 0a 00 0a 00 01"),
         (Drive().to(10).on_sent(set_point(10), heard_s=0.081), "sensors were silent for 81 ms"),
+        (Drive().to(10).on_sent(set_point(10), bumpers=0b000100), "pushes on towards the bumpers 000100"),
+        (Drive().on_sent(set_point(0)).on_sent(set_point(0, -1), bumpers=0b001000), "towards the bumpers 001000"),
         (Drive().on_sent(bytes(7)), "no brake: 00 00 00 00 00 00 00"),
         (Drive().on_sent(set_point(0), latched=True), "at 0.010 s: no brake though"),
         (two_lost(set_point(0), 1, 2).on_sent(set_point(9)), "left jumps from 0.00 to 0.09"),
@@ -110,9 +114,9 @@ def test_a_frame_that_arrives_twice_is_a_complaint() -> None:
 
 def test_envelope_pressed_bumper_allows_reversal_but_no_jump() -> None:
     drive = Drive().on_sent(set_point(1)).on_sent(set_point(2)).on_sent(set_point(3))
-    drive.envelope.bumper_pressed = True
-    assert not drive.on_sent(set_point(-1)).violations
-    assert "left jumps from 0.00 to 0.09" in drive.on_sent(set_point(9)).violations[0]
+    assert not drive.on_sent(set_point(-1), bumpers=0b000001).violations
+    violations = drive.on_sent(set_point(9), bumpers=0b000001).violations
+    assert any("left jumps from 0.00 to 0.09" in each for each in violations)
 
 
 def test_envelope_faulty_clock_frames_are_judged_one_by_one() -> None:

@@ -2,6 +2,7 @@
 
 import random
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -44,8 +45,10 @@ def witness(rig: Rig) -> Witness:
 
 
 @pytest.fixture
-def program(rig: Rig, witness: Witness, tmp_path: Path) -> Program:
-    return Program(rig, witness, Device(rig.injection, random.Random(1)), tmp_path, 1, random.Random(1))
+def program(rig: Rig, witness: Witness, tmp_path: Path) -> Iterator[Program]:
+    program = Program(rig, witness, Device(rig.injection, random.Random(1)), tmp_path, 1, random.Random(1))
+    with closing(program.knowledge.journal):
+        yield program
 
 
 async def run(program: Program, rig: Rig, until_s: float) -> None:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from hal.robot import STANDSTILL, Robot, SensorReadings
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.teaching.commands import Resume
+from kurt2rt.core.teaching.commands import Resume, Stop
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.faulty_sensor import RobotProxy
 from kurt2rt.platform.tick_timer import TickTimer
@@ -79,7 +79,7 @@ class Witness(RobotProxy):
             self._clock_faulty_until_s = self._sensed_at_s + _CLOCK_SETTLES_S
         self.envelope.clock_is_faulty = self._sensed_at_s < self._clock_faulty_until_s
         readings = super().sense(now_s)
-        self.envelope.bumper_pressed = readings.bumpers != 0
+        self.envelope.bumpers = readings.bumpers
         return readings
 
     def on_tick(self, record: TickRecord, timer: TickTimer, begun_s: float, period_s: float) -> None:
@@ -89,9 +89,12 @@ class Witness(RobotProxy):
         if moves and not record.decision.driving:
             self._complain(f"drives though {cause}")
         accepted = {result.command_id for result in record.results if result.accepted}
-        if any(isinstance(each, Resume) and each.command_id in accepted for each in record.commands):
-            self._must_stand = ""
-            self.resumes += 1
+        for each in record.commands:
+            if isinstance(each, Resume) and each.command_id in accepted:
+                self._must_stand = ""
+                self.resumes += 1
+            elif isinstance(each, Stop) and each.press_id is None:
+                self._must_stand = f"{each.teacher} said stop"
         # A teacher's hand tells it to drive, until it lets go.
         if moves and self._must_stand and cause is not DecisionCause.TEACHER:
             self._complain(f"drives though {self._must_stand}, without a resume")
