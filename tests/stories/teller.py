@@ -1,6 +1,7 @@
 """Drives a story and judges it: what must hold whatever fails, by code that shares nothing with the guard."""
 
 import asyncio
+import ctypes
 import math
 import random
 import shutil
@@ -9,6 +10,8 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
+
+import psutil
 
 from hal import points
 from hal.guard_reason import GuardReason
@@ -33,6 +36,7 @@ from tests.stories.witness import Witness
 
 WORKS_AGAIN_S = 5.0
 """Time after the last fault in which the robot drives again, or asks."""
+_MINUTE_TICKS = 6000
 _DOWN_S = (0.5, 3.0)
 _LASTING_S = 3.0
 """Time after a fault in which the robot may still stand because of it: until a teacher has said Go."""
@@ -82,6 +86,8 @@ class Told:
     lessons: int = 0
     acted: set[str] = field(default_factory=set)
     """Faults that changed anything."""
+    resident_mb: list[float] = field(default_factory=list)
+    """Memory of this process after each minute of a program."""
     happened: Counter[str] = field(default_factory=Counter)
     """Number of times that something happened at each point of the program."""
 
@@ -186,6 +192,9 @@ class _Teller:
             self._set_free()
         for command in teacher.update(record):
             self._device.send(command)
+        if record.number % _MINUTE_TICKS == 0:
+            ctypes.CDLL(None).malloc_trim(0)
+            self.told.resident_mb.append(psutil.Process().memory_info().rss / 1e6)
         moves = record.guard_result.wheel_speeds != STANDSTILL
         if now_s <= max(over_s, story.lasts_s - CALM_S) + WORKS_AGAIN_S:
             self._works = now_s >= over_s and (self._works or moves or record.decision.cause in ASKING)

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from statistics import median
 from typing import get_args
 
 import pytest
@@ -13,12 +14,15 @@ from hal.guard import Guard
 from hal.points import Point
 from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.platform.memory import pin_mmap_threshold
+from tests.processors import OF_2004
 from tests.stories.shrink import shrunk
 from tests.stories.story import Event, Story, Teaching, all_kinds, as_text, load_story, story_of
 from tests.stories.table import TARGETS
 from tests.stories.teller import tell
 
 SHORT_S = 10.0
+MOST_GROWN_MB = 5.0
 QUIET = Teaching(phase=2, reaction_s=0.5, error_rate=0.0)
 
 
@@ -44,21 +48,33 @@ def test_a_story_is_the_same_as_a_file(seed: int, tmp_path: Path) -> None:
     assert load_story(file) == story
 
 
-def test_a_story_ends_equal_with_other_hashes_of_python(tmp_path: Path) -> None:
+def test_a_story_ends_equal_on_another_processor_with_other_hashes(tmp_path: Path) -> None:
     file = tmp_path / "story.yaml"
     file.write_text(as_text(story_of(5, SHORT_S)), encoding="utf-8")
     ends = [
         subprocess.run(
             [sys.executable, "-m", "tests.stories", str(file)],
-            env=os.environ | {"PYTHONHASHSEED": each},
+            env=os.environ | each,
             capture_output=True,
             text=True,
             check=True,
         ).stdout
-        for each in ("1", "2")
+        for each in ({"PYTHONHASHSEED": "1"}, {"PYTHONHASHSEED": "2", **OF_2004})
     ]
     assert ends[0] == ends[1]
     assert ends[0].startswith("everything held\nhash ")
+
+
+@pytest.mark.deep
+@pytest.mark.timeout(3600)
+async def test_half_an_hour_takes_no_memory(tmp_path: Path) -> None:
+    pin_mmap_threshold()  # as the robot's program does
+    faults = tuple(Event(at_s=60.0 * minute, target="bus_in", kind="garbage", lasts_s=5.0) for minute in range(1, 29))
+    story = Story(seed=2, lasts_s=1800.0, taught=True, teaching=QUIET, faults=faults)
+    told = await tell(story, tmp_path)
+    assert told.problems == []
+    assert len(told.resident_mb) == 30
+    assert median(told.resident_mb[-10:]) - median(told.resident_mb[5:15]) <= MOST_GROWN_MB
 
 
 async def test_a_guard_that_lets_go_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
