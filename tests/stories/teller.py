@@ -63,6 +63,7 @@ _OFTEN: dict[Point, float] = {
 """Probabilities at points that are passed often."""
 _SOMETIMES = 0.15
 _BECAUSE: dict[Point, frozenset[str]] = {
+    "frames wait a cycle": frozenset({"bus blocked"}),
     "the send queue is full": frozenset({"bus lost"}),
     "the disk is late": frozenset({"unsaved"}),
     "the file is locked": frozenset({"unsaved"}),
