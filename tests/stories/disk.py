@@ -22,6 +22,10 @@ _REFUSALS: dict[Kind, tuple[str, int]] = {
 }
 
 
+_STATISTICS_EVERY = 10
+"""Calls of `write` from one that writes statistics to the next."""
+
+
 class KilledError(BaseException):
     """End of the program by a signal that it does not see."""
 
@@ -70,6 +74,7 @@ class KnowledgeFile:
         self.writer = JournalWriter(self.journal, now, clock=injection.time.now_s)
         self._blocked_until_s = 0.0
         self._was_blocked = False
+        self._calls = 0
 
     def write(self) -> None:
         """Write what waits, unless a write blocks at this simulated time. Raises KilledError."""
@@ -83,7 +88,9 @@ class KnowledgeFile:
             self._blocked_until_s, self._was_blocked = until_s, True
             return
         self._was_blocked = False
-        self.writer.write_waiting()
+        self._calls += 1
+        if self.writer.unwritten or self._calls % _STATISTICS_EVERY == 0:
+            self.writer.write_waiting()
 
     def take_away(self, fault: Fault) -> None:
         """Write what waits, and put another file in the place of this one for as long as a planned fault lasts."""

@@ -49,6 +49,7 @@ _WRITES_EVERY_TICKS = 10
 _POLL_EVERY_TICKS = 1000
 """Period of the recorder's sync; the disk is not faster in simulated time."""
 _ENDLESS_S = 1e9
+KNOWLEDGE = "robot.knowledge"
 KILLS = ("killed", "killed_before_commit", "killed_after_commit")
 
 
@@ -78,7 +79,7 @@ class Program:
         self._rig, self._witness, self._time, self._device = rig, witness, rig.time, device
         self._number, self._chance, self._period_s = number, chance, settings.cycle_s
         self._commands = 0
-        path = folder / "drill.knowledge"
+        path = folder / KNOWLEDGE
         opened = open_for_teaching(path, settings, task)
         opened.journal.close()
         self.knowledge = KnowledgeFile(path, opened, rig.injection, self._wall_clock)

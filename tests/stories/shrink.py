@@ -24,7 +24,12 @@ async def shrunk(story: Story, breaks: Breaks) -> Story:
     """
     problem = kind_of(await breaks(story))
 
+    tried: set[Story] = set()
+
     async def still(smaller: Story) -> bool:
+        if smaller in tried:
+            return False
+        tried.add(smaller)
         return kind_of(await breaks(smaller)) == problem
 
     parts = 2
@@ -52,6 +57,9 @@ async def shrunk(story: Story, breaks: Breaks) -> Story:
 
 def _smaller(story: Story) -> Iterator[Story]:
     """Yield stories with one thing less."""
+    shorter_s = round(story.over_s + CALM_S, 3)
+    if story.faults and shorter_s < story.lasts_s:
+        yield story.model_copy(update={"lasts_s": shorter_s})
     plain = {
         "task": "wall_following",
         "world": "a",
@@ -65,9 +73,8 @@ def _smaller(story: Story) -> Iterator[Story]:
             yield story.model_copy(update={name: value})
     for point in story.points:
         yield story.model_copy(update={"points": tuple(each for each in story.points if each != point)})
-    shorter_s = round(story.over_s + CALM_S, 3)
-    if story.faults and shorter_s < story.lasts_s:
-        yield story.model_copy(update={"lasts_s": shorter_s})
+    if story.faults:
+        yield story.model_copy(update={"faults": ()})
     for number, event in enumerate(story.faults):
         if event.lasts_s > 2 * _SHORTEST_S:
             half = Event(**(event.model_dump() | {"lasts_s": round(event.lasts_s / 2, 3)}))

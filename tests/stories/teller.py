@@ -1,4 +1,4 @@
-"""Drives a story and judges it: what must hold whatever fails, by code that shares nothing with the guard."""
+"""Drives a story: starts of the program one after the other, with faults, points and a teacher as it says."""
 
 import asyncio
 import ctypes
@@ -14,44 +14,24 @@ from tempfile import TemporaryDirectory
 import psutil
 
 from hal import points
-from hal.guard_reason import GuardReason
 from hal.points import Point, never
-from hal.robot import STANDSTILL
-from kurt2rt.core.decision.decision import ASKING
-from kurt2rt.core.rla.rla import AUTONOMOUS
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.verify import verify
 from simbridge.worlds.world_loading import load_world
 from tests.stories.cable import SOUND
 from tests.stories.device import Device
-from tests.stories.program import Program
+from tests.stories.program import KNOWLEDGE, Program
 from tests.stories.rig import ROBOT, Rig
-from tests.stories.story import CALM_S, Event, Story, Teaching, because_of
-from tests.stories.table import TABLE, Fault, case_of
+from tests.stories.rules import LASTING_S, Rules
+from tests.stories.story import CALM_S, Event, Story, Teaching
+from tests.stories.table import Fault
 from tests.stories.teacher import StoryTeacher
 from tests.stories.witness import Witness
 
-WORKS_AGAIN_S = 5.0
-"""Time after the last fault in which the robot drives again, or asks."""
 _MINUTE_TICKS = 6000
 _DOWN_S = (0.5, 3.0)
-_LASTING_S = 3.0
-"""Time after a fault in which the robot may still stand because of it: until a teacher has said Go."""
-_ALWAYS = frozenset({"stopped", "unknown", "teacher", "unattended", "front bumper", "rear bumper", "touches", "blind"})
-"""Reasons to stand that need no fault: a teacher's, a question, what is in the way; blind is told by its sensors."""
-_DROVE_S = 0.3
-_SHOWS_M_S = 0.2
-"""Slowest set point that shows whether wheels obey: in a narrow curve one side nearly stands."""
-_ROUNDING_S = 1e-6
-_SILENT_S = 0.35
-"""Time after the teachers' last message in which the robot may drive, before phase 5."""
-_MANOEUVRE = 4.0
-"""Factor of the time in which wheels show that they disobey, for a robot that turns and stops in between."""
-_STARTS_S = 0.1
-"""Time after a start in which readings arrive."""
 _OFTEN: dict[Point, float] = {
     "frames wait a cycle": 0.002,
     "the send queue is full": 0.0005,
@@ -62,15 +42,6 @@ _OFTEN: dict[Point, float] = {
 }
 """Probabilities at points that are passed often."""
 _SOMETIMES = 0.15
-_BECAUSE: dict[Point, frozenset[str]] = {
-    "frames wait a cycle": frozenset({"bus blocked"}),
-    "the send queue is full": frozenset({"bus lost"}),
-    "the disk is late": frozenset({"unsaved"}),
-    "the file is locked": frozenset({"unsaved"}),
-    "a durable commit fails": frozenset({"unsaved"}),
-}
-"""Reasons to stand because of what happens at a point."""
-_LIMITS = frozenset({"speed limit", "slew limit"})
 _KNOWN_SEED, _KNOWN_S = 0, 40.0
 
 
@@ -104,11 +75,8 @@ class _Teller:
         self._witness = Witness(self.rig)
         self._device = Device(self.rig.injection, self._chance)
         self._program: Program | None = None
-        self._ends = self._is_down = False
-        self._begun: list[Fault] = []
-        self._begun_s = 0.0
-        self._works = False
-        self._reasons: frozenset[str] = frozenset()
+        self._rules = Rules(story, self._witness, self._device)
+        self._ends = False
         self._rare = random.Random(f"points {story.seed}")
         for event in story.faults:
             self._plan(event)
@@ -117,17 +85,13 @@ class _Teller:
         told, story = self.told, self._story
         while self._time.now_s() < story.lasts_s:
             await self._run_program()
-            self._is_down = True
             self._time.run_until(self._time.now_s() + self._chance.uniform(*_DOWN_S))
-            self._is_down = False
-        if not self._works:
-            told.problems.append(f"it neither drove nor asked within {WORKS_AGAIN_S:g} s after the last fault")
-        told.problems += self._witness.complaints
+        self._rules.on_end(self._folder / KNOWLEDGE)
+        told.problems += self._rules.problems + self._witness.complaints
         told.acted = {str(each) for each in self.rig.injection.acted}
         digest = self._witness.digest
         digest.update("".join(sorted(self._device.saved)).encode())
         told.hash = digest.hexdigest()
-        self._judge_saved()
         return told
 
     def _happens(self, point: Point) -> bool:
@@ -154,10 +118,11 @@ class _Teller:
             cable=SOUND,
             records=story.records,
         )
-        for fault in self._begun:
+        for fault in self._rules.begun:
             if fault.acts(self._time.now_s()):
                 program.begin_fault(fault)  # it was under way before this start
-        self._ends, self._begun_s = False, self._time.now_s()
+        self._ends = False
+        self._rules.on_start(self._time.now_s())
         teacher = StoryTeacher(program, self._task, story.teaching, chance)
         points.happens = self._happens
         try:
@@ -166,8 +131,8 @@ class _Teller:
             points.happens = never
         told.ticks += program.runtime.timer.ticks
         told.lessons += len(program.knowledge.submitted)
-        if program.ended_by and not self._may_end():
-            told.problems.append(f"the program ended by {program.ended_by}")
+        if program.ended_by:
+            self._rules.on_error(program.ended_by)
         told.problems += program.close()
         self._program = None
         await self._device.wait()
@@ -186,9 +151,8 @@ class _Teller:
         return is_whole and not falsified
 
     def _after_tick(self, teacher: StoryTeacher, record: TickRecord) -> None:
-        now_s, story = self._time.now_s(), self._story
-        over_s = story.over_s
-        if not teacher.is_calm and now_s >= story.lasts_s - CALM_S:
+        now_s = self._time.now_s()
+        if not teacher.is_calm and now_s >= self._story.lasts_s - CALM_S:
             teacher.is_calm = True
             self._set_free()
         for command in teacher.update(record):
@@ -196,30 +160,8 @@ class _Teller:
         if record.number % _MINUTE_TICKS == 0:
             ctypes.CDLL(None).malloc_trim(0)
             self.told.resident_mb.append(psutil.Process().memory_info().rss / 1e6)
-        moves = record.guard_result.wheel_speeds != STANDSTILL
-        if now_s <= max(over_s, story.lasts_s - CALM_S) + WORKS_AGAIN_S:
-            self._works = now_s >= over_s and (self._works or moves or record.decision.cause in ASKING)
-        if moves and story.teaching.phase < AUTONOMOUS and now_s - self._heard_at_s() > _SILENT_S:
-            told_s = now_s - self._heard_at_s()
-            self.told.problems.append(f"at {now_s:.2f} s: it drives {told_s:.2f} s after its teachers' last message")
-        self._explain(record, now_s)
-
-    def _heard_at_s(self) -> float:
-        """Return the time at which the newest message of any teacher arrived."""
         hand = None if self._program is None else self._program.hand
-        return max(self._device.heard_at_s, -math.inf if hand is None else hand.heard_at_s)
-
-    def _explain(self, record: TickRecord, now_s: float) -> None:
-        """Complain of a new reason to stand that no fault gives; one that holds on was explained as it came."""
-        cause = () if record.decision.driving else (record.decision.cause,)
-        reasons = frozenset((*cause, *record.guard_result.reasons)) - _ALWAYS - _LIMITS
-        new, self._reasons = reasons - self._reasons, reasons
-        for fault in self._begun:
-            new -= because_of(fault.target, fault.kind)
-        for point in self._story.points:
-            new -= _BECAUSE.get(point, frozenset())
-        if new and now_s - self._begun_s > _STARTS_S:
-            self.told.problems.append(f"at {now_s:.2f} s: it stands because of {', '.join(sorted(new))}, why?")
+        self._rules.on_tick(record, now_s, max(self._device.heard_at_s, -math.inf if hand is None else hand.heard_at_s))
 
     def _plan(self, event: Event) -> None:
         fault = event.fault()
@@ -229,9 +171,7 @@ class _Teller:
     def _begin(self, fault: Fault) -> None:
         self.rig.injection.plan(fault)
         self.rig.ends.begin(fault)
-        if all(each.end_s < fault.begin_s for each in self._begun):
-            self._witness.watch()
-        self._begun.append(fault)
+        self._rules.on_fault(fault)
         match fault.target, fault.kind:
             case "controller", "restart":
                 self.rig.power_cycle()
@@ -244,55 +184,20 @@ class _Teller:
 
     def _end(self, fault: Fault) -> None:
         self.rig.ends.finish(fault)
-        self._judge(fault)
+        self._rules.on_fault_over(fault)
         if self._program is not None:
             self.told.problems += self._program.end_fault(fault)
         self.rig.injection.end(fault.target)
-        self._time.at(fault.end_s + _LASTING_S, lambda: self._begun.remove(fault))
-
-    def _judge(self, fault: Fault) -> None:
-        """Complain unless the robot stood as the table demands, where nothing else failed and it drove before."""
-        row = TABLE.cases.get(fault.target, {}).get(fault.kind)
-        alone = all(each is fault or each.end_s < fault.begin_s - _LASTING_S for each in self._begun)
-        # A disk stops it only by a lesson, a hand only one that drives.
-        judged = row is not None and row.leads_to == "stands" and fault.target not in ("disk", "teacher_link")
-        if row is None or not judged or not alone or self._begun_s > fault.begin_s - _DROVE_S:
-            return
-        witness, within_s = self._witness, row.latches_within_s or row.within_s or 0.0
-        if row.latches == GuardReason.WHEELS_DISOBEY:
-            within_s *= _MANOEUVRE  # until it is told to change its speed
-        slowest = min(witness.slowest_m_s(fault.begin_s - _DROVE_S, fault.begin_s + within_s), 1.0)
-        if slowest < _SHOWS_M_S or fault.end_s - fault.begin_s < within_s or not fault.acts(fault.begin_s):
-            return
-        if not witness.standstills(fault.begin_s, fault.end_s):
-            self.told.problems.append(f"{fault}: it did not stand")
-        latched = witness.latched
-        if row.latches is not None and (latched is None or latched[0] > fault.begin_s + within_s + _ROUNDING_S):
-            self.told.problems.append(f"{fault}: it was to be stopped because of {row.latches}, was {latched}")
+        self._time.at(fault.end_s + LASTING_S, lambda: self._rules.begun.remove(fault))
 
     def _is_over(self) -> bool:
         return self._ends or self._time.now_s() >= self._story.lasts_s
-
-    def _may_end(self) -> bool:
-        """Return whether the fault of a clock or a tick is there, after which the program has to start again."""
-        return any(
-            fault.target in ("clock", "tick") and case_of(fault.target, fault.kind).must.ends_by == "restart"
-            for fault in self._begun
-        )
 
     def _set_free(self) -> None:
         """Put it where it can drive, as a person does."""
         self.rig.set_down()
         if self._program is not None:
             self._program.runtime.reposition()
-
-    def _judge_saved(self) -> None:
-        with Journal.read_only(self._folder / "drill.knowledge") as journal:
-            stored = [entry.event.origin.command_id for entry in journal.iter_entries()]
-        if lost := self._device.saved - set(stored):
-            self.told.problems.append(f"{len(lost)} lessons that a teacher was told to be durable are gone")
-        if len(set(stored)) != len(stored):
-            self.told.problems.append("a lesson stands twice in the knowledge")
 
 
 def _open_files() -> int:
@@ -302,7 +207,7 @@ def _open_files() -> int:
 async def tell(story: Story, folder: Path) -> Told:
     """Drive a story in an empty folder."""
     if story.taught:
-        shutil.copy(await _knowledge(story.task), folder / "drill.knowledge")
+        shutil.copy(await _knowledge(story.task), folder / KNOWLEDGE)
     teller = _Teller(story, folder)
     with closing(teller.rig):
         return await teller.tell()
@@ -319,5 +224,5 @@ async def _knowledge(task: str) -> Path:
         story = Story(seed=_KNOWN_SEED, lasts_s=_KNOWN_S, task=task, teaching=teaching)
         told = await tell(story, Path(folder.name))
         assert not told.problems, told.problems
-        _known[task] = folder, Path(folder.name) / "drill.knowledge"
+        _known[task] = folder, Path(folder.name) / KNOWLEDGE
     return _known[task][1]

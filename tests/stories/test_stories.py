@@ -48,7 +48,7 @@ def test_a_story_is_the_same_as_a_file(seed: int, tmp_path: Path) -> None:
     assert load_story(file) == story
 
 
-def test_a_story_ends_equal_on_another_processor_with_other_hashes(tmp_path: Path) -> None:
+def test_a_story_ends_equal_on_another_processor(tmp_path: Path) -> None:
     file = tmp_path / "story.yaml"
     file.write_text(as_text(story_of(5, SHORT_S)), encoding="utf-8")
     ends = [
@@ -116,4 +116,4 @@ async def test_shrinking_leaves_what_breaks() -> None:
     assert [each.target for each in shortest.faults] == ["encoders", "bus_out"]
     assert all(each.lasts_s < 0.1 for each in shortest.faults)
     assert (shortest.world, shortest.points, shortest.teaching) == ("a", (), QUIET)
-    assert tries < 60
+    assert tries < 55

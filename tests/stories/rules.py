@@ -1,0 +1,127 @@
+"""Rules that hold in every story, whatever fails, by code that shares nothing with the guard."""
+
+from pathlib import Path
+
+from hal.guard_reason import GuardReason
+from hal.points import Point
+from hal.robot import STANDSTILL
+from kurt2rt.core.decision.decision import ASKING
+from kurt2rt.core.rla.rla import AUTONOMOUS
+from kurt2rt.core.tick_record import TickRecord
+from kurt2rt.knowledge.journal.journal import Journal
+from tests.stories.device import Device
+from tests.stories.story import CALM_S, Story, because_of
+from tests.stories.table import TABLE, Fault, case_of
+from tests.stories.witness import Witness
+
+WORKS_AGAIN_S = 5.0
+"""Time after the last fault in which the robot drives again, or asks."""
+LASTING_S = 3.0
+"""Time after a fault in which the robot may still stand because of it: until a teacher has said Go."""
+_ALWAYS = frozenset({"stopped", "unknown", "teacher", "unattended", "front bumper", "rear bumper", "touches", "blind"})
+"""Reasons to stand that need no fault: a teacher's, a question, what is in the way; blind is told by its sensors."""
+_DROVE_S = 0.3
+_SHOWS_M_S = 0.2
+"""Slowest set point that shows whether wheels obey: in a narrow curve one side nearly stands."""
+_ROUNDING_S = 1e-6
+_SILENT_S = 0.35
+"""Time after the teachers' last message in which the robot may drive, before phase 5."""
+_MANOEUVRE = 4.0
+"""Factor of the time in which wheels show that they disobey, for a robot that turns and stops in between."""
+_STARTS_S = 0.1
+"""Time after a start in which readings arrive."""
+_BECAUSE: dict[Point, frozenset[str]] = {
+    "frames wait a cycle": frozenset({"bus blocked"}),
+    "the send queue is full": frozenset({"bus lost"}),
+    "the disk is late": frozenset({"unsaved"}),
+    "the file is locked": frozenset({"unsaved"}),
+    "a durable commit fails": frozenset({"unsaved"}),
+}
+"""Reasons to stand because of what happens at a point."""
+_LIMITS = frozenset({"speed limit", "slew limit"})
+
+
+class Rules:
+    """Judge of one story, besides its witness at the bus: why and when the robot stands, and what it keeps."""
+
+    def __init__(self, story: Story, witness: Witness, device: Device) -> None:
+        self.problems: list[str] = []
+        """Broken rules, in order."""
+        self.begun: list[Fault] = []
+        """Faults that are under way, or over for less than LASTING_S."""
+        self._story, self._witness, self._device = story, witness, device
+        self._started_s = 0.0
+        self._works = False
+        self._reasons: frozenset[str] = frozenset()
+
+    def on_start(self, now_s: float) -> None:
+        """Note a start of the program."""
+        self._started_s = now_s
+
+    def on_error(self, error: str) -> None:
+        """Complain of an error that ended the program, unless a clock or a tick failed for good."""
+        if not any(
+            fault.target in ("clock", "tick") and case_of(fault.target, fault.kind).must.ends_by == "restart"
+            for fault in self.begun
+        ):
+            self.problems.append(f"the program ended by {error}")
+
+    def on_tick(self, record: TickRecord, now_s: float, heard_at_s: float) -> None:
+        """Judge a tick. `heard_at_s`: arrival of the newest message of any teacher, in simulated time."""
+        story, over_s = self._story, self._story.over_s
+        moves = record.guard_result.wheel_speeds != STANDSTILL
+        if now_s <= max(over_s, story.lasts_s - CALM_S) + WORKS_AGAIN_S:
+            self._works = now_s >= over_s and (self._works or moves or record.decision.cause in ASKING)
+        if moves and story.teaching.phase < AUTONOMOUS and now_s - heard_at_s > _SILENT_S:
+            silent_s = now_s - heard_at_s
+            self.problems.append(f"at {now_s:.2f} s: it drives {silent_s:.2f} s after its teachers' last message")
+        self._explain(record, now_s)
+
+    def on_fault(self, fault: Fault) -> None:
+        """Note the beginning of a fault."""
+        if all(each.end_s < fault.begin_s for each in self.begun):
+            self._witness.watch()
+        self.begun.append(fault)
+
+    def on_fault_over(self, fault: Fault) -> None:
+        """Complain unless the robot stood as the table demands, where nothing else failed and it drove before."""
+        row = TABLE.cases.get(fault.target, {}).get(fault.kind)
+        alone = all(each is fault or each.end_s < fault.begin_s - LASTING_S for each in self.begun)
+        # A disk stops it only by a lesson, a hand only one that drives.
+        judged = row is not None and row.leads_to == "stands" and fault.target not in ("disk", "teacher_link")
+        if row is None or not judged or not alone or self._started_s > fault.begin_s - _DROVE_S:
+            return
+        witness, within_s = self._witness, row.latches_within_s or row.within_s or 0.0
+        if row.latches == GuardReason.WHEELS_DISOBEY:
+            within_s *= _MANOEUVRE  # until it is told to change its speed
+        slowest = min(witness.slowest_m_s(fault.begin_s - _DROVE_S, fault.begin_s + within_s), 1.0)
+        if slowest < _SHOWS_M_S or fault.end_s - fault.begin_s < within_s or not fault.acts(fault.begin_s):
+            return
+        if not witness.standstills(fault.begin_s, fault.end_s):
+            self.problems.append(f"{fault}: it did not stand")
+        latched = witness.latched
+        if row.latches is not None and (latched is None or latched[0] > fault.begin_s + within_s + _ROUNDING_S):
+            self.problems.append(f"{fault}: it was to be stopped because of {row.latches}, was {latched}")
+
+    def on_end(self, knowledge: Path) -> None:
+        """Judge the end of the story: that it works again, and that `knowledge` has every lesson once."""
+        if not self._works:
+            self.problems.append(f"it neither drove nor asked within {WORKS_AGAIN_S:g} s after the last fault")
+        with Journal.read_only(knowledge) as journal:
+            stored = [entry.event.origin.command_id for entry in journal.iter_entries()]
+        if lost := self._device.saved - set(stored):
+            self.problems.append(f"{len(lost)} lessons that a teacher was told to be durable are gone")
+        if len(set(stored)) != len(stored):
+            self.problems.append("a lesson stands twice in the knowledge")
+
+    def _explain(self, record: TickRecord, now_s: float) -> None:
+        """Complain of a new reason to stand that no fault gives; one that holds on was explained as it came."""
+        cause = () if record.decision.driving else (record.decision.cause,)
+        reasons = frozenset((*cause, *record.guard_result.reasons)) - _ALWAYS - _LIMITS
+        new, self._reasons = reasons - self._reasons, reasons
+        for fault in self.begun:
+            new -= because_of(fault.target, fault.kind)
+        for point in self._story.points:
+            new -= _BECAUSE.get(point, frozenset())
+        if new and now_s - self._started_s > _STARTS_S:
+            self.problems.append(f"at {now_s:.2f} s: it stands because of {', '.join(sorted(new))}, why?")
