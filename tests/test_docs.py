@@ -13,7 +13,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-import anyio
 import pytest
 import yaml
 
@@ -23,7 +22,6 @@ from config.settings import Settings, load_settings
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.perception.definition import SituationDefinition
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
-from kurt2rt.experiments.lockstep.curriculum import run_exams
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.search.settings import SearchSettings
 from kurt2rt.gym.registration import ENVIRONMENTS
@@ -31,7 +29,7 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.service.settings import ServiceSettings
 from simbridge.worlds.world_settings import WorldSettings
 from tests.cli.helpers import CommandLine, started
-from tests.experiments.helpers import ROBOT, STAGE, short_task, teach
+from tests.experiments.helpers import examined, short_task, teach
 from tests.plugin_packages import install
 from tests.runs.replay.stored_runs import STORED
 from tests.runs.replay.stories import slim
@@ -53,19 +51,13 @@ SCHEMAS: dict[str, type[Settings]] = {
 
 Shorten = Callable[[Sequence[str]], list[str]]
 
+SHORT_DOUBT = ("--seeds", "915", "--world", "a", "--seconds", "2", "--task", "short.yaml")
 # Seconds to minutes, or without end, as they stand in the text: run whole, but small, in the deep suite.
 LONG: dict[str, Shorten] = {
     "demo": lambda words: [*words, "--task", "short.yaml"],
     "study doubt": lambda words: [
         *words[:3],
-        "--seeds",
-        "915",
-        "--world",
-        "a",
-        "--seconds",
-        "2",
-        "--task",
-        "short.yaml",
+        *["--seeds", "915", "--world", "a", "--seconds", "2", "--task", "short.yaml"],
     ],
     "study certify": lambda words: [*words[:3], "--runs", "3", "--seconds", "1", "--pictures", "1"],
     "exam": lambda words: [*words, "--task", "short.yaml"],
@@ -316,19 +308,8 @@ def test_printed_tests_of_plug_ins_pass(folder: Path) -> None:
 
 def test_printed_learner_is_short_and_stands_in_the_table(kurt2rt: CommandLine) -> None:
     assert len(Path("my_learner.py").read_text(encoding="utf-8").splitlines()) <= 40
-    words = (
-        "study",
-        "compare",
-        "--learner",
-        "my_learner:Nearest",
-        "--seeds",
-        "3901",
-        "--checkpoint",
-        "2",
-        "--jobs",
-        "1",
-    )
-    said = kurt2rt(*words, "--task", "short.yaml", "--set", "exam.worlds=[a]", "--json")
+    line = "study compare --learner my_learner:Nearest --seeds 3901 --checkpoint 2 --jobs 1 --task short.yaml"
+    said = kurt2rt(*line.split(), "--set", "exam.worlds=[a]", "--json")
     assert said.exit_code == 0, said.err
     success, *_ = json.loads(said.out)["tables"]
     assert [row[1] for row in success["rows"]] == ["RLA, as shipped", "my_learner:Nearest"]
@@ -410,9 +391,7 @@ def test_printed_task_after_a_short_lesson_succeeds(name: str, tmp_path: Path) -
     exam: dict[str, object] = {"worlds": [world], "duration_s": 8.0}
     task = load_task(str(printed_task(name, tmp_path, teaching=shorter, exam=exam)))
     taught = teach(tmp_path / "knowledge", task)
-    (result,) = anyio.run(
-        lambda: run_exams(STAGE, ROBOT, task, taught.events, (world,), seed=1, report=lambda *_: None)
-    )
+    (result,) = examined(task, taught.events, (world,))
     assert result.progress > 0.0
     assert result.passed, result
 
@@ -422,14 +401,14 @@ def test_printed_task_after_a_short_lesson_succeeds(name: str, tmp_path: Path) -
 @pytest.mark.parametrize("name", PRINTED_TASKS)
 def test_printed_task_on_the_default_seed_succeeds(name: str, tmp_path: Path) -> None:
     task = load_task(str(printed_task(name, tmp_path)))
-    assert [exam.passed for exam in examined(task, 1, tmp_path)] == [True, True, True]
+    assert [exam.passed for exam in demonstrated(task, 1, tmp_path)] == [True, True, True]
 
 
 @pytest.mark.deep
 def test_printed_streets_on_the_printed_seed_succeed(tmp_path: Path) -> None:
     (words,) = {line for line in printed_demos() if "streets" in line}
     task = taught_by_named(load_task("streets"), "ordinary")
-    assert [exam.passed for exam in examined(task, seed_of(words), tmp_path)] == [True]
+    assert [exam.passed for exam in demonstrated(task, seed_of(words), tmp_path)] == [True]
 
 
 def test_printed_demos_of_streets_name_one_seed() -> None:
@@ -450,11 +429,9 @@ def seed_of(line: str) -> int:
     return int(words[words.index("--seed") + 1]) if "--seed" in words else 1
 
 
-def examined(task: TaskSettings, seed: int, folder: Path) -> tuple[DriveRow, ...]:
+def demonstrated(task: TaskSettings, seed: int, folder: Path) -> tuple[DriveRow, ...]:
     """Teach and examine as `kurt2rt demo` does."""
-    taught = teach(folder / "knowledge", task, seed)
-    worlds = task.exam.worlds
-    return anyio.run(lambda: run_exams(STAGE, ROBOT, task, taught.events, worlds, seed=seed, report=lambda *_: None))
+    return examined(task, teach(folder / "knowledge", task, seed).events, task.exam.worlds, seed)
 
 
 @pytest.mark.usefixtures("printed_files")

@@ -9,6 +9,7 @@ import yaml
 from config import CONFIG_DIR
 from tests.cli.helpers import CommandLine, results_in, unknown_name
 
+PAPER = ("study", "paper", "--jobs", "1", "--no-paper-defaults")
 COMMAND = "kurt2rt study paper --seeds 100 --task short.yaml --no-paper-defaults"
 
 
@@ -24,19 +25,7 @@ def short_task(folder: Path, **teaching: Any) -> Path:
 
 
 def test_a_task_of_ones_own_is_taught_examined_and_reported(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    words = (
-        "study",
-        "paper",
-        "--task",
-        short_task(tmp_path),
-        "--seeds",
-        "100",
-        "--jobs",
-        "1",
-        "--no-paper-defaults",
-        "--out",
-        "made",
-    )
+    words = (*PAPER, "--task", short_task(tmp_path), "--seeds", "100", "--out", "made")
     first = kurt2rt(*words)
     assert first.exit_code == 0, first.err
     assert "short circle" in first.out
@@ -86,17 +75,7 @@ def test_paper_quick_has_a_result_of_each_job(kurt2rt: CommandLine) -> None:
 
 @pytest.mark.deep  # quick ones: a lesson of many robots in test_engine, and the witness of a job
 def test_paper_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    words = (
-        "study",
-        "paper",
-        "--task",
-        short_task(tmp_path),
-        "--seeds",
-        "100-101",
-        "--jobs",
-        "1",
-        "--no-paper-defaults",
-    )
+    words = (*PAPER, "--task", short_task(tmp_path), "--seeds", "100-101")
     told = {engine: kurt2rt(*words, "--out", engine, "--engine", engine) for engine in ("compiled", "can")}
     assert [each.exit_code for each in told.values()] == [0, 0]
     assert "2 jobs in the batch, 2 of them on the CAN bus too" in told["compiled"].err
@@ -106,7 +85,7 @@ def test_paper_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine, tmp
 
 @pytest.mark.deep
 def test_paper_goes_on_in_the_batch_where_it_was_on_the_bus(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    words = ("study", "paper", "--task", short_task(tmp_path), "--jobs", "1", "--no-paper-defaults", "--out", "made")
+    words = (*PAPER, "--task", short_task(tmp_path), "--out", "made")
     kurt2rt(*words, "--seeds", "100", "--engine", "can")
     (path,) = Path("made/results/shipped").glob("*.json")
     stamp_ns = path.stat().st_mtime_ns

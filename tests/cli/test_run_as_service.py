@@ -11,13 +11,10 @@ import yaml
 
 from config import CONFIG_DIR
 from tests.cli.helpers import Running, running
-from tests.service.systemd.manager import Manager, manager
+from tests.service.systemd.manager import Manager
+from tests.service.systemd.test_watchdog import systemd
 
-
-@pytest.fixture
-def systemd(tmp_path: Path) -> Iterator[Manager]:
-    with manager(tmp_path) as opened:
-        yield opened
+__all__ = ["systemd"]
 
 
 @pytest.fixture

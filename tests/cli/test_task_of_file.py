@@ -77,18 +77,8 @@ def test_own_tasks_file_is_used_with_the_settings_given(kurt2rt: CommandLine, tm
     assert kurt2rt("knowledge", "import", "out.zip", "--out", "theirs.knowledge", "--task", task).exit_code == 0
     assert Knowledge.load("theirs.knowledge", task=str(task)).lessons == 0
     runtime = changed("runtime", "default", tmp_path, lambda content: content.update(task=str(task)))
-    said = kurt2rt(
-        "run",
-        "--settings",
-        runtime,
-        "--seconds",
-        "0.1",
-        "--port",
-        "0",
-        "--no-record",
-        "--knowledge",
-        "theirs.knowledge",
-    )
+    short_run = ("run", "--seconds", "0.1", "--port", "0", "--no-record", "--knowledge", "theirs.knowledge")
+    said = kurt2rt(*short_run, "--settings", runtime)
     assert said.out.startswith("task sneaking")
 
 

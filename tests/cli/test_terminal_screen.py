@@ -4,17 +4,14 @@ import io
 from dataclasses import replace
 from pathlib import Path
 
-import pytest
 from rich.console import Console
 
 from kurt2rt.cli.terminal_screen import TerminalScreen
-from kurt2rt.service.post_tick import ProgramStatus
-from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages, to_line
+from kurt2rt.teacher.page.served_pages import ServedPages, to_line
 from tests.channel.channel_fixture import ChannelFixture
-from tests.cli.test_status_line import PASSIVE, WELL
-
-LOCAL = PageAddress("local", "http://127.0.0.1:8642/pair?token=" + 32 * "a")
-PHONE = PageAddress("phone", "http://192.168.100.100:8642/pair?token=" + 32 * "b")
+from tests.cli.test_live_screen import LOCAL, PHONE
+from tests.cli.test_status_line import status_of
+from tests.service.health.reports import A_BUS
 
 
 class Shown:
@@ -32,12 +29,6 @@ class Shown:
         return lines
 
 
-@pytest.fixture(scope="module")
-def status() -> ProgramStatus:
-    desk = ChannelFixture()
-    return ProgramStatus(desk.record, desk.runtime, 0, None, "")
-
-
 def test_page_line_tells_each_address_once() -> None:
     shown = Shown()
     shown.screen.page_line(to_line(ServedPages((LOCAL,), network=False, trouble="")))
@@ -49,14 +40,14 @@ def test_page_line_tells_each_address_once() -> None:
     assert shown.screen.links == (LOCAL.link, PHONE.link)
 
 
-def test_show_in_a_log_prints_changes_other_than_numbers(status: ProgramStatus) -> None:
-    shown = Shown(as_service=True)
-    shown.screen.show_status(status, WELL, "")
+def test_show_in_a_log_prints_changes_other_than_numbers() -> None:
+    shown, status = Shown(as_service=True), status_of(ChannelFixture())
+    shown.screen.show_status(status, A_BUS, "")
     assert shown.lines() == []
     for errors in (130, 131):
-        shown.screen.show_status(status, replace(PASSIVE, controller_trouble=f"{errors} errors"), "")
+        shown.screen.show_status(status, replace(A_BUS, controller_trouble=f"{errors} errors"), "")
     assert len(shown.lines()) == 1
-    shown.screen.show_status(status, WELL, "no simulator")
+    shown.screen.show_status(status, A_BUS, "no simulator")
     assert len(shown.lines()) == 1
-    shown.screen.show_status(status, WELL, "")
+    shown.screen.show_status(status, A_BUS, "")
     assert len(shown.lines()) == 1

@@ -1,7 +1,9 @@
 """Short lessons and exams on the simulated robot."""
 
+from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import anyio
@@ -9,10 +11,12 @@ import anyio
 from hal.kurt2_settings import load_kurt2
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.lockstep.curriculum import run_lesson
+from kurt2rt.experiments.lockstep.curriculum import run_exams, run_lesson
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
+from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from simbridge.simulation import Kurt2SimulationFactory
 
@@ -49,7 +53,15 @@ class Taught:
     reported_s: list[float]
 
 
-def teach(knowledge: Path, task: TaskSettings | None = None, seed: int = 1) -> Taught:
+def teach(
+    knowledge: Path,
+    task: TaskSettings | None = None,
+    seed: int = 1,
+    *,
+    stage: Kurt2SimulationFactory = STAGE,
+    plan: LessonPlan | None = None,
+    engine: Engine = Engine.CAN,
+) -> Taught:
     """Give one lesson into a knowledge file."""
     saved: list[Acknowledgement] = []
     reported_s: list[float] = []
@@ -57,17 +69,30 @@ def teach(knowledge: Path, task: TaskSettings | None = None, seed: int = 1) -> T
 
     async def lesson() -> tuple[TrainingResult, list[TeachingEvent]]:
         return await run_lesson(
-            STAGE,
-            ROBOT,
-            task,
-            knowledge,
+            *(stage, ROBOT, task, knowledge),
             seed=seed,
             report=lambda _what, done_s, _whole_s: reported_s.append(done_s),
             on_saved=saved.append,
+            plan=plan,
+            engine=engine,
         )
 
     result, events = anyio.run(lesson)
     return Taught(task, knowledge, result, events, saved, reported_s)
+
+
+def examined(
+    task: TaskSettings,
+    events: Sequence[TeachingEvent] = (),
+    worlds: Sequence[str] = ("a",),
+    seed: int = 1,
+    *,
+    stage: Kurt2SimulationFactory = STAGE,
+    engine: Engine = Engine.CAN,
+) -> tuple[DriveRow, ...]:
+    """Return the exams of a robot with these lessons in these worlds."""
+    exams = partial(run_exams, stage, ROBOT, task, events, worlds, seed=seed, report=lambda *_: None, engine=engine)
+    return anyio.run(exams)
 
 
 def teachers_drive(task: TaskSettings) -> DriveRow:

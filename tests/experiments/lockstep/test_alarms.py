@@ -3,19 +3,15 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-import anyio
-
 from hal.guard_reason import GuardReason
 from kurt2rt.core.rla.rla import Phase
-from kurt2rt.experiments.lockstep.curriculum import run_exams, run_lesson
-from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict
+from kurt2rt.experiments.lockstep.drive_row import ExamVerdict
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, FaultySensor
-from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.study.exam_tables import exam_tables
 from simbridge.robot_simulation import Kurt2Simulation
 from simbridge.simulation import Kurt2SimulationFactory
-from tests.experiments.helpers import ROBOT, short_task
+from tests.experiments.helpers import ROBOT, examined, short_task, teach
 
 TASK = short_task(exam_s=20.0)
 ALARM_CYCLE = 500
@@ -46,11 +42,7 @@ STAGE = StageWithAnAlarm(ROBOT)
 
 
 def test_the_teacher_says_go_and_the_lesson_goes_on(tmp_path: Path) -> None:
-    async def lesson() -> TrainingResult:
-        result, _ = await run_lesson(STAGE, ROBOT, TASK, tmp_path / "knowledge", seed=1, report=lambda *_: None)
-        return result
-
-    result = anyio.run(lesson)
+    result = teach(tmp_path / "knowledge", TASK, stage=STAGE).result
     assert result.counts.alarms == sum(minute.go for minute in result.counts.workload) == 1
     at_the_alarm, a_second_later, end = (result.trail[at] for at in (26, 29, -1))
     assert at_the_alarm == a_second_later
@@ -58,15 +50,9 @@ def test_the_teacher_says_go_and_the_lesson_goes_on(tmp_path: Path) -> None:
 
 
 def test_alarm_ended_by_a_demonstration_counts_once(tmp_path: Path) -> None:
-    async def lesson() -> TrainingResult:
-        # Shown from 4.5 s on; the alarm comes at 5 s, and Resume before the second is over after which he says Go.
-        plan = LessonPlan(((Phase.CRITIC, 8.0),), signs="judge", set_down_every_s=4.5, shown_s=1.0)
-        result, _ = await run_lesson(
-            STAGE, ROBOT, TASK, tmp_path / "knowledge", seed=1, report=lambda *_: None, plan=plan
-        )
-        return result
-
-    result = anyio.run(lesson)
+    # Shown from 4.5 s on; the alarm comes at 5 s, and Resume before the second is over after which he says Go.
+    plan = LessonPlan(((Phase.CRITIC, 8.0),), signs="judge", set_down_every_s=4.5, shown_s=1.0)
+    result = teach(tmp_path / "knowledge", TASK, stage=STAGE, plan=plan).result
     assert [(minute.shown, minute.go) for minute in result.counts.workload] == [(1, 1)]
     assert result.counts.alarms == 1
 
@@ -83,14 +69,7 @@ class StageWithABrokenSensor(Kurt2SimulationFactory):
 
 
 def test_stop_for_a_broken_sensor_does_not_end_the_lesson(tmp_path: Path) -> None:
-    task = short_task(20.0, 0.0)
-
-    async def lesson() -> TrainingResult:
-        stage = StageWithABrokenSensor(ROBOT)
-        result, _ = await run_lesson(stage, ROBOT, task, tmp_path / "knowledge", seed=1, report=lambda *_: None)
-        return result
-
-    result = anyio.run(lesson)
+    result = teach(tmp_path / "knowledge", short_task(20.0, 0.0), stage=StageWithABrokenSensor(ROBOT)).result
     (minute,) = result.counts.workload
     assert (result.counts.alarms, result.counts.rescues) == (minute.go, minute.rescued) == (1, 1)
     carried, end = result.trail[-15], result.trail[-1]
@@ -98,10 +77,7 @@ def test_stop_for_a_broken_sensor_does_not_end_the_lesson(tmp_path: Path) -> Non
 
 
 def test_an_exam_ends_and_says_why() -> None:
-    async def exam() -> tuple[DriveRow, ...]:
-        return await run_exams(STAGE, ROBOT, TASK, [], ("a",), seed=1, report=lambda *_: None)
-
-    (result,) = anyio.run(exam)
+    (result,) = examined(TASK, stage=STAGE)
     drive = result.teacher
     assert drive is not None
     assert drive.alarm == GuardReason.BUS_LOST

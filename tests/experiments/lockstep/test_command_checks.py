@@ -3,23 +3,13 @@
 import random
 from pathlib import Path
 
-import anyio
 import pytest
 
 from behaviors.metrics.task_metric import MetricSettings, TaskMetric
 from behaviors.metrics.way import WaySettings
-from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.curriculum import run_exams
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 from simbridge.contracts.simulation import Simulation
-from tests.experiments.helpers import ROBOT, STAGE, short_task, teach
-
-
-def examined(task: TaskSettings) -> None:
-    async def exams() -> None:
-        await run_exams(STAGE, ROBOT, task, [], ("a",), seed=1, report=lambda *_: None)
-
-    anyio.run(exams)
+from tests.experiments.helpers import examined, short_task, teach
 
 
 class FlySettings(MetricSettings):

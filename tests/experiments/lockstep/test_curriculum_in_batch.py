@@ -3,29 +3,25 @@
 from dataclasses import replace
 from pathlib import Path
 
-import anyio
 import pytest
 
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep import curriculum
 from kurt2rt.experiments.lockstep.batch_mind import require_known_lesson
-from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.lockstep.lesson import GivenLesson
 from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.knowledge.journal.loading import read_knowledge
 from simbridge.contracts.batch import BatchRefusedError
-from tests.experiments.helpers import ROBOT, STAGE, short_task
+from tests.experiments.helpers import ROBOT, short_task, teach
 from tests.simbridge.batch.equal_lessons import require_equal_lessons
 
 TASK = short_task(supervised_s=3.0, corrections_s=1.0, exam_s=1.0)
 
 
-def lesson(file: Path, engine: Engine, task: TaskSettings = TASK) -> GivenLesson:
-    async def run() -> GivenLesson:
-        return GivenLesson(*await run_lesson(STAGE, ROBOT, task, file, seed=1, report=lambda *_: None, engine=engine))
-
-    return anyio.run(run)
+def lesson(file: Path, engine: Engine) -> GivenLesson:
+    taught = teach(file, TASK, engine=engine)
+    return GivenLesson(taught.result, taught.events)
 
 
 def test_file_of_a_lesson_in_a_batch_is_that_of_the_bus(tmp_path: Path) -> None:
@@ -47,14 +43,8 @@ def test_batch_refuses_to_go_on_from_knowledge(tmp_path: Path) -> None:
 
 
 def test_batch_refuses_another_plan(tmp_path: Path) -> None:
-    async def run() -> None:
-        plan = replace(plan_of(TASK), most_presses=3)
-        await run_lesson(
-            STAGE, ROBOT, TASK, tmp_path / "k", seed=1, report=lambda *_: None, plan=plan, engine=Engine.COMPILED
-        )
-
     with pytest.raises(BatchRefusedError, match="a plan of its own"):
-        anyio.run(run)
+        teach(tmp_path / "k", TASK, plan=replace(plan_of(TASK), most_presses=3), engine=Engine.COMPILED)
 
 
 @pytest.mark.parametrize(

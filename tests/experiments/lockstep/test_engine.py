@@ -5,11 +5,11 @@ import pytest
 
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep import curriculum
-from kurt2rt.experiments.lockstep.curriculum import run_drives, run_exams
+from kurt2rt.experiments.lockstep.curriculum import run_drives
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import Engine, choose_witnesses
 from kurt2rt.experiments.lockstep.exam import ExamSetup
-from tests.experiments.helpers import ROBOT, STAGE, short_task
+from tests.experiments.helpers import ROBOT, STAGE, examined, short_task
 
 
 def test_choose_witnesses_takes_one_percent_of_three_to_twenty() -> None:
@@ -24,24 +24,11 @@ def test_choose_witnesses_depends_on_the_drives_alone() -> None:
     assert choose_witnesses(range(100), "b") != few
 
 
-def examined(engine: Engine, reported: list[str] | None = None) -> tuple[DriveRow, ...]:
-    """Examine an untaught robot, which stands, and its teacher's policy."""
-
-    async def run() -> tuple[DriveRow, ...]:
-        def report(what: str, done_s: float, whole_s: float) -> None:
-            if reported is not None and done_s == whole_s:
-                reported.append(what)
-
-        return await run_exams(
-            STAGE, ROBOT, short_task(exam_s=1.0), (), ("a", "b"), seed=1, report=report, engine=engine
-        )
-
-    return anyio.run(run)
-
-
 def test_robot_that_leaves_the_batch_is_examined_on_the_bus(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(curriculum, "examine_in_batch", lambda *_, **__: [None] * 4)
-    assert examined(Engine.COMPILED) == examined(Engine.CAN)
+    # An untaught robot, which stands, and its teacher's policy.
+    task, worlds = short_task(exam_s=1.0), ("a", "b")
+    assert examined(task, worlds=worlds, engine=Engine.COMPILED) == examined(task, worlds=worlds)
 
 
 def test_stuck_robot_that_is_rescued_is_examined_on_the_bus() -> None:

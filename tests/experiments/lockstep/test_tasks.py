@@ -2,33 +2,15 @@
 
 from pathlib import Path
 
-import anyio
 import pytest
 
 from behaviors.repertoire import load_repertoire
 from config import CONFIG_DIR
 from config.settings import SettingsError
-from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.lockstep.curriculum import run_lesson
-from kurt2rt.experiments.lockstep.lesson import TrainingResult
-from tests.experiments.helpers import ROBOT, STAGE
+from kurt2rt.core.task_settings import load_task
+from tests.experiments.helpers import ROBOT, STAGE, teach
 
 TASKS = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))
-
-
-def lasting(name: str, supervised_s: float = 4.0, corrections_s: float = 4.0) -> TaskSettings:
-    task = load_task(name)
-    teaching = task.teaching.model_copy(update={"supervised_s": supervised_s, "corrections_s": corrections_s})
-    exam = task.exam.model_copy(update={"duration_s": 7.0})
-    return task.model_copy(update={"teaching": teaching, "exam": exam})
-
-
-def lesson(task: TaskSettings, folder: Path) -> TrainingResult:
-    async def teach() -> TrainingResult:
-        result, _ = await run_lesson(STAGE, ROBOT, task, folder / "knowledge", seed=1, report=lambda *_: None)
-        return result
-
-    return anyio.run(teach)
 
 
 @pytest.mark.parametrize("name", TASKS)
@@ -71,9 +53,9 @@ def test_a_name_that_is_no_name_of_a_file_is_refused(name: str) -> None:
 
 
 def test_the_robot_is_set_down_anew_where_the_task_says_so(tmp_path: Path) -> None:
-    task = lasting("circle_repositioned", 4.0, 4.5)
-    often = task.teaching.model_copy(update={"reposition_every_s": 1.0})
-    result = lesson(task.model_copy(update={"teaching": often}), tmp_path)
+    times = {"supervised_s": 4.0, "corrections_s": 4.5, "reposition_every_s": 1.0}
+    task = load_task("circle_repositioned", changes={f"teaching.{key}": str(each) for key, each in times.items()})
+    result = teach(tmp_path / "knowledge", task).result
     assert result.counts.repositions == 8
     places = {(round(each.x_m, 1), round(each.y_m, 1)) for each in result.trail}
     assert len(places) > 8

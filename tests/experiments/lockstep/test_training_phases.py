@@ -3,7 +3,6 @@
 from dataclasses import replace
 from pathlib import Path
 
-import anyio
 import pytest
 
 from config.settings import SettingsError
@@ -11,12 +10,11 @@ from kurt2rt.core.rla.events import Appraised, RlaCreated, RlaRewarded, Teaching
 from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.core.rla.statistics import VALUES_INCLUDE, Statistics
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.curriculum import run_lesson
-from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
+from kurt2rt.experiments.lockstep.exam import ExamSetup
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, SignalTimes
 from kurt2rt.knowledge.journal.journal import Journal
-from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task
+from tests.experiments.helpers import Taught, exam_on_bus, short_task, teach
 from tests.experiments.lockstep.test_exam import knows_only
 
 
@@ -26,13 +24,9 @@ def go_on(
     """Another lesson behind the first one; the events that it brought."""
     knowledge = folder / "knowledge"
     knowledge.write_bytes(taught.knowledge.read_bytes())
-
-    async def lesson() -> tuple[TrainingResult, list[TeachingEvent]]:
-        return await run_lesson(STAGE, ROBOT, task or taught.task, knowledge, seed=1, report=lambda *_: None, plan=plan)
-
-    result, events = anyio.run(lesson)
-    assert events[: len(taught.events)] == taught.events
-    return result, events[len(taught.events) :]
+    again = teach(knowledge, task or taught.task, plan=plan)
+    assert again.events[: len(taught.events)] == taught.events
+    return again.result, again.events[len(taught.events) :]
 
 
 def of_phase(phase: Phase, lasts_s: float = 6.0, **more: object) -> LessonPlan:
@@ -96,17 +90,8 @@ def rival(action: str) -> RlaCreated:
 )
 def test_exam_after_phase_5_uses_its_values(alone: Statistics | None, drives: bool) -> None:
     task = short_task(exam_s=2.0, radius=1e5)
-
-    async def drive() -> float:
-        simulation = STAGE.open("a", 1, "exam")
-        events = [knows_only("stand"), rival("forward")]
-        # What a teacher had said of them does not count there.
-        saved = Statistics(values={2: -0.05}, numbers={VALUES_INCLUDE: 2.0})
-        try:
-            setup = ExamSetup("a", 1, events=events, saved=saved, autonomous_values=alone)
-            exam = await examine(simulation, ROBOT, task, setup, lambda _: None)
-        finally:
-            simulation.close()
-        return exam.way_m
-
-    assert (anyio.run(drive) > 0.3) is drives
+    events = [knows_only("stand"), rival("forward")]
+    # What a teacher had said of them does not count there.
+    saved = Statistics(values={2: -0.05}, numbers={VALUES_INCLUDE: 2.0})
+    setup = ExamSetup("a", 1, events=events, saved=saved, autonomous_values=alone)
+    assert (exam_on_bus(task, setup).way_m > 0.3) is drives

@@ -21,24 +21,19 @@ def settings(**changes: float) -> ErrandsSettings:
     )
 
 
-def walk(town: Town, *steps: str) -> list[Street | None]:
-    led: list[Street | None] = [street(town, 1.3, 2.2, Side.EAST)]
+def walk(town: Town, *steps: str) -> list[Street]:
+    led = [street(town, 1.3, 2.2, Side.EAST)]
     for behaviour in steps:
-        here = led[-1]
-        assert here is not None
-        led.append(town.on_from(here)[behaviour])
+        led.append(town.on_from(led[-1])[behaviour])
     return led
 
 
 def test_demonstrated_m_is_the_shortest_piece(town: Town) -> None:
     led = walk(town, *["turn_left"] * 4, "straight_on")
     first, second = led[0], led[1]
-    assert first is not None
-    assert second is not None
     assert demonstrated_m(led, first, second) == pytest.approx(1.8)
     assert demonstrated_m(led, second, first) == pytest.approx(3 * 1.8)
     last = led[-1]
-    assert last is not None
     assert demonstrated_m(led, first, last) == pytest.approx(1.8)  # not all the way round the block
     assert demonstrated_m(led, last, first) == math.inf
 
@@ -46,8 +41,6 @@ def test_demonstrated_m_is_the_shortest_piece(town: Town) -> None:
 def test_a_way_ends_where_the_robot_was_set_down(town: Town) -> None:
     led = walk(town, "straight_on", "turn_left")
     start, goal = led[0], led[2]
-    assert start is not None
-    assert goal is not None
     assert demonstrated_m([led[0], led[1], None, led[1], led[2]], start, goal) == math.inf
 
 
@@ -59,7 +52,6 @@ def test_choose_goals_are_far_new_and_successive(town: Town) -> None:
         "south": street(town, 5.8, 1.3, Side.SOUTH),
     }
     start = led[0]
-    assert start is not None
     goals = choose_goals(town, named, led, start, settings(), random.Random(1))
     assert len(goals) == 5
     assert goals[0].start == start
@@ -72,7 +64,5 @@ def test_choose_goals_of_demonstrated_ways_is_empty(town: Town) -> None:
     steps = ["straight_on", "straight_on", "turn_left"]
     led = walk(town, *steps)
     start, goal = led[0], led[-1]
-    assert start is not None
-    assert goal is not None
     assert choose_goals(town, {"there": goal}, led, start, settings(), random.Random(1)) == ()
     assert len(choose_goals(town, {"there": goal}, [start], start, settings(goals=1), random.Random(1))) == 1

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+from hal.bus_state import ControllerState
+from hal.health import Health
 from kurt2rt.channel.protocol.health import (
     BusHealth,
     DiskSpace,
@@ -15,6 +17,8 @@ from kurt2rt.channel.protocol.health import (
 )
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 
+A_BUS = Health(1000, 0, 0, 0, 0, 0, "", ControllerState.ACTIVE, "", "", None)
+"""Health of a bus on which nothing is wrong."""
 WELL = HealthReport(
     version="0.1.0",
     boot="626f6f74",

@@ -5,9 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from hal.bus_state import ControllerState
 from hal.guard_reason import GuardReason
-from hal.health import Health
 from hal.kurt2_settings import load_kurt2
 from hal.robot import readings_before_the_first
 from hal.sensor_signs import SensorFault
@@ -16,9 +14,8 @@ from kurt2rt.channel.protocol.health import DiskSpace, Trouble
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.service.health.diagnostics import LATELY_S, CounterGrowth, Diagnostics
 from kurt2rt.service.health.snapshot import Snapshot
-from tests.service.health.reports import WELL
+from tests.service.health.reports import A_BUS, WELL
 
-A_BUS = Health(1000, 0, 0, 0, 0, 0, "", ControllerState.ACTIVE, "", "", None)
 CALM = Snapshot(
     tick=100,
     now_s=50.0,

@@ -215,39 +215,8 @@ async def test_pairing_that_another_program_uses_is_said(tmp_path: Path) -> None
         await come_in(pages.link(LOCAL))
 
 
-async def test_page_that_nobody_shows_for_long_lets_go_of_its_pairing(tmp_path: Path) -> None:
-    links = Links()
-    device = local_pairing(tmp_path / "teachers", tmp_path / "devices").device
-
-    async def answer(message: object) -> None:
-        answers.append(message)
-
-    async def ask() -> dict[str, Any]:
-        return {"type": "http.request", "body": b""}
-
-    answers: list[object] = []
-    scope = {
-        "type": "http",
-        "method": "GET",
-        "path": "/pair",
-        "query_string": f"token={device.token}".encode(),
-        "headers": [(b"host", b"127.0.0.1")],
-        "server": ("127.0.0.1", 80),
-        "client": ("127.0.0.1", 9),
-    }
-    async with anyio.create_task_group() as tasks:
-        pages = DevicePages(tasks, PageSite(links, "a robot", [], "desk", idle_s=0.01))
-        pages.serve([device])
-        for times in (1, 2):
-            await pages(scope, ask, answer)
-            assert links.opened == [LOCAL] * times
-            await links.closed()
-        await pages.end()
-
-
-async def test_this_machines_own_page_is_not_served_to_the_network(tmp_path: Path) -> None:
-    device = local_pairing(tmp_path / "teachers", tmp_path / "devices").device
-    links = Links()
+async def pair_at(pages: DevicePages, device: Device, host: str) -> int:
+    """Ask for the link of a device at an address of this machine; return the status."""
     answers: list[dict[str, Any]] = []
 
     async def answer(message: Any) -> None:
@@ -256,21 +225,34 @@ async def test_this_machines_own_page_is_not_served_to_the_network(tmp_path: Pat
     async def ask() -> dict[str, Any]:
         return {"type": "http.request", "body": b""}
 
-    scope = {
-        "type": "http",
-        "method": "GET",
-        "path": "/pair",
-        "query_string": f"token={device.token}".encode(),
-        "headers": [(b"host", b"192.168.0.7")],
-        "server": ("192.168.0.7", 8642),
-        "client": ("192.168.0.9", 50000),
-    }
+    scope = {"type": "http", "method": "GET", "path": "/pair", "query_string": f"token={device.token}".encode()}
+    here = {"headers": [(b"host", host.encode())], "server": (host, 8642), "client": (host, 50000)}
+    await pages({**scope, **here}, ask, answer)
+    return int(answers[0]["status"])
+
+
+@asynccontextmanager
+async def pages_of(device: Device, links: Links, idle_s: float) -> AsyncIterator[DevicePages]:
     async with anyio.create_task_group() as tasks:
-        pages = DevicePages(tasks, PageSite(links, "a robot", [], "desk"))
+        pages = DevicePages(tasks, PageSite(links, "a robot", [], "desk", idle_s=idle_s))
         pages.serve([device])
-        await pages(scope, ask, answer)
+        yield pages
         await pages.end()
-    assert answers[0]["status"] == 403
+
+
+async def test_page_that_nobody_shows_for_long_lets_go_of_its_pairing(tmp_path: Path) -> None:
+    device, links = local_pairing(tmp_path / "teachers", tmp_path / "devices").device, Links()
+    async with pages_of(device, links, 0.01) as pages:
+        for times in (1, 2):
+            assert await pair_at(pages, device, "127.0.0.1") == 200
+            assert links.opened == [LOCAL] * times
+            await links.closed()
+
+
+async def test_this_machines_own_page_is_not_served_to_the_network(tmp_path: Path) -> None:
+    device, links = local_pairing(tmp_path / "teachers", tmp_path / "devices").device, Links()
+    async with pages_of(device, links, 60.0) as pages:
+        assert await pair_at(pages, device, "192.168.0.7") == 403
     assert links.opened == []
 
 
