@@ -55,10 +55,7 @@ SHORT_DOUBT = ("--seeds", "915", "--world", "a", "--seconds", "2", "--task", "sh
 # Seconds to minutes, or without end, as they stand in the text: run whole, but small, in the deep suite.
 LONG: dict[str, Shorten] = {
     "demo": lambda words: [*words, "--task", "short.yaml"],
-    "study doubt": lambda words: [
-        *words[:3],
-        *["--seeds", "915", "--world", "a", "--seconds", "2", "--task", "short.yaml"],
-    ],
+    "study doubt": lambda words: [*words[:3], *SHORT_DOUBT],
     "study certify": lambda words: [*words[:3], "--runs", "3", "--seconds", "1", "--pictures", "1"],
     "exam": lambda words: [*words, "--task", "short.yaml"],
     "train": lambda words: shortened_lesson(words),

@@ -10,10 +10,10 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
-from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.cli.helpers import CommandLine, unknown_name
+from tests.knowledge.reading import events_in
 
 NOT_OURS = "to whom it may concern\n"
 
@@ -33,12 +33,6 @@ def changed(kind: str, name: str, folder: Path, change: Callable[[dict[str, obje
 def copied(knowledge: Path, to: Path) -> Path:
     shutil.copy(knowledge, to)
     return to
-
-
-def lessons_in(knowledge: Path) -> int:
-    with Journal.read_only(knowledge) as journal:
-        assert journal.check() == []
-        return len(journal.events())
 
 
 @pytest.mark.parametrize("command", EVERY_WRITER + EVERY_READER, ids=" ".join)
@@ -85,14 +79,14 @@ def test_misfit_knowledge_is_refused_by_exam_lesson_and_run(
     kurt2rt: CommandLine, tmp_path: Path, lessons: Path, another_task: Callable[[Path], Path], why: str
 ) -> None:
     mine = copied(lessons, tmp_path / "mine.knowledge")
-    taught = lessons_in(mine)
+    taught = events_in(mine)
     task = another_task(tmp_path)
     service = changed("runtime", "default", tmp_path, lambda content: content.update(task=str(task)))
 
     assert why in kurt2rt.refused("exam", mine, "--task", task)
     assert why in kurt2rt.refused("train", "--knowledge", mine, "--task", task)
     assert why in kurt2rt.refused("run", "--knowledge", mine, "--settings", service, "--seconds", "1")
-    assert lessons_in(mine) == taught
+    assert events_in(mine) == taught
 
 
 @pytest.mark.parametrize(
@@ -230,7 +224,7 @@ def test_lesson_or_study_that_cannot_be_is_refused_before_work(kurt2rt: CommandL
 def test_a_damaged_lesson_is_named_and_the_rest_is_kept(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     mine = copied(lessons, tmp_path / "mine.knowledge")
     image = mine.read_bytes()
-    assert image.count(b'"teacher":"scripted teacher"') == lessons_in(mine)
+    assert image.count(b'"teacher":"scripted teacher"') == len(events_in(mine))
     mine.write_bytes(image.replace(b'"teacher":"scripted teacher"', b'"teacher":"scripted preacher"'[:28]))
     for command in (EVERY_WRITER[0], EVERY_WRITER[1], ("exam",)):
         assert KnowledgeCode.ROW_CHANGED.do in kurt2rt.refused(*command, mine)

@@ -11,18 +11,11 @@ import pytest
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, RlaCreated, RlaRewarded
 from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
-from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.knowledge.journal.fold import fold_journal
-from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.cli.helpers import CommandLine
 from tests.knowledge.lessons import teach
-
-
-def folded(knowledge: Path) -> RlaSystem:
-    with Journal.read_only(knowledge) as journal:
-        return fold_journal(journal, radius=1.0)
+from tests.knowledge.reading import folded
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,6 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Take, Teach
 from kurt2rt.knowledge.exchange.package import export_knowledge
 from kurt2rt.knowledge.journal.entry import JournalEntry
-from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -34,6 +33,7 @@ from simbridge.simulation import Kurt2SimulationFactory
 from tests.channel.channel_fixture import ChannelFixture
 from tests.cli.helpers import Running, running
 from tests.knowledge.lessons import created
+from tests.knowledge.reading import events_in
 from tests.knowledge.refusals import refused
 from tests.patience import PATIENCE_S
 
@@ -124,8 +124,7 @@ async def test_loaded_knowledge_replaces_the_file_and_keeps_a_copy(tmp_path: Pat
     content = (tmp_path / "out.zip" if form == "archive" else taught).read_bytes()
     assert await runs.load(content, TEACHER) == Outcome.of(ResultCode.KNOWLEDGE_LOADED, lessons=1)
     assert runs.advance().endswith(f" {tmp_path / 'walls.knowledge.1'}")
-    with Journal.read_only(tmp_path / "walls.knowledge") as loaded:
-        assert len(list(loaded.entries())) == 1
+    assert len(events_in(tmp_path / "walls.knowledge")) == 1
     assert not runs.present.fresh
     assert not [name for name in names_in(tmp_path) if name.startswith(".")]
 
@@ -244,9 +243,7 @@ async def test_next_run_keeps_teacher_lessons_and_verdict(tmp_path: Path) -> Non
             slower = await state_at(client, faster.tick + 30)
             assert slower.boot == third.boot
         robot.wait_for(f"kept as {Path('var', 'wall_following.knowledge.1')}")
-    with Journal.read_only(knowledge.with_name("wall_following.knowledge.1")) as kept:
-        assert len(list(kept.entries())) == 1
-    with Journal.read_only(knowledge) as new:
-        assert len(list(new.entries())) == 1
+    for each in (knowledge, knowledge.with_name("wall_following.knowledge.1")):
+        assert len(events_in(each)) == 1
     assert verdict_file(knowledge.with_name("wall_following.knowledge.1")) == kept_verdict
     assert len(names_in(tmp_path / "var" / "runs")) == 4

@@ -16,18 +16,15 @@ from hal.codec import load_codec
 from kurt2rt.core.decision.decision import StandReason
 from kurt2rt.core.decision.standing import Standing, short_text
 from kurt2rt.core.rla.events import RlaCreated
-from kurt2rt.knowledge.journal.fold import check_knowledge
-from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.journal_file import log_of
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from tests.cli.helpers import CommandLine, Running, running
 from tests.cli.three_programs import brakes
+from tests.knowledge.reading import events_in
 
 
 def actions_in(knowledge: Path) -> list[str]:
-    with Journal.read_only(knowledge) as journal:
-        assert check_knowledge(journal) == []
-        return [event.rla.action for event in journal.events() if isinstance(event, RlaCreated)]
+    return [event.rla.action for event in events_in(knowledge) if isinstance(event, RlaCreated)]
 
 
 class Lesson(NamedTuple):

@@ -9,8 +9,9 @@ from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.teaching.question import Question
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
+from kurt2rt.knowledge.journal.fold import fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
+from tests.knowledge.reading import events_in
 from tests.service.rig import Rig, eager_task, end_service, rig, scripted
 
 
@@ -30,10 +31,8 @@ async def teach_until(lessons: int, here: Rig, knowledge: Path) -> list[str]:
     return acting
 
 
-def events_in(knowledge: Path) -> list[str]:
-    with Journal.read_only(knowledge) as journal:
-        assert check_knowledge(journal) == []
-        return [event.origin.command_id for event in journal.events()]
+def commands_in(knowledge: Path) -> list[str]:
+    return [event.origin.command_id for event in events_in(knowledge)]
 
 
 async def test_serve_teaches_brakes_at_its_end_and_goes_on_later(tmp_path: Path) -> None:
@@ -50,7 +49,7 @@ async def test_serve_teaches_brakes_at_its_end_and_goes_on_later(tmp_path: Path)
     assert here.questions[0].nearest_rla is None
     with rig() as here:
         second = await teach_until(1, here, knowledge)
-    assert events_in(knowledge) == first + second
+    assert commands_in(knowledge) == first + second
     assert not here.records[0].decision.asking or here.records[0].decision.match is not None
     with Journal.read_only(knowledge) as journal:
         statistics = journal.statistics()

@@ -9,8 +9,8 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.teaching.commands import Command, Resume
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.journal_file import log_of
+from tests.knowledge.reading import events_in
 from tests.service.rig import end_service, rig, scripted
 
 Step = Callable[[TickRecord], bool]
@@ -80,8 +80,7 @@ async def test_serve_failing_disk_stops_until_lessons_are_saved(tmp_path: Path) 
     assert story.over
     assert all(record.decision.wheel_speeds == STANDSTILL for record in unsaved)
     assert all(record.guard_result.wheel_speeds == STANDSTILL for record in unsaved)
-    with Journal.read_only(knowledge) as journal:
-        assert [event.origin.command_id for event in journal.events()] == acting
+    assert [event.origin.command_id for event in events_in(knowledge)] == acting
 
 
 async def test_serve_lost_bus_stops_until_resume(tmp_path: Path) -> None:

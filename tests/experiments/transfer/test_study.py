@@ -7,15 +7,15 @@ import pytest
 from matplotlib.image import imread
 
 from config.settings import SettingsError
-from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
+from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.experiments.study.examination import events_before_press
 from kurt2rt.experiments.study.jobs import Results
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.transfer import HomeJob, Transfer, TransferJob, TransferOutcome, make_plan, read_study, tell
-from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.helpers import short_task
 from tests.experiments.study.here import carry_out, parts_in
+from tests.knowledge.reading import events_in
 
 AFTER = (0, 2, 5)
 NEW = Transfer(short_task(exam_s=4.0), ("rooms-SEED",), AFTER, 15.0)
@@ -47,14 +47,9 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
     return Done(Results(folder), plan)
 
 
-def events_of(file: Path) -> list[TeachingEvent]:
-    with Journal.read_only(file) as journal:
-        return journal.events()
-
-
 def test_robot_goes_on_from_what_it_was_taught_at_home(done: Done) -> None:
     (home,) = done.plan.of(HomeJob)
-    before, after = events_of(home.knowledge), events_of(done.job.knowledge)
+    before, after = events_in(home.knowledge), events_in(done.job.knowledge)
     outcome = done.outcome
     assert outcome.lesson.world == "rooms-1"
     assert after[: len(before)] == before
@@ -69,8 +64,8 @@ def test_checkpoint_is_what_a_shorter_lesson_teaches(done: Done) -> None:
     outcome = done.results.read(shorter, TransferOutcome)
     _, point, _ = done.outcome.checkpoints
     assert outcome.lesson.presses == 2
-    known = len(events_of(done.plan.of(HomeJob)[0].knowledge))
-    assert events_of(shorter.knowledge) == events_of(job.knowledge)[: known + point.lessons]
+    known = len(events_in(done.plan.of(HomeJob)[0].knowledge))
+    assert events_in(shorter.knowledge) == events_in(job.knowledge)[: known + point.lessons]
     assert outcome.checkpoints[-1] == point
 
 

@@ -19,6 +19,7 @@ from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter, Ret
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.knowledge.lessons import BINDING, STAMP, begun, created
+from tests.knowledge.reading import events_in
 from tests.knowledge.refusals import refused
 
 SOON = RetryDelays(first_s=0.001, longest_s=0.004)
@@ -41,19 +42,13 @@ def wait_for_error(writer: JournalWriter) -> str:
     return writer.saving_error
 
 
-def stored(path: Path) -> list[RlaCreated]:
-    with Journal.read_only(path) as journal:
-        assert journal.check() == []
-        return [event for event in journal.events() if isinstance(event, RlaCreated)]
-
-
 def test_acknowledged_durable_lessons_come_in_order(path: Path) -> None:
     lessons = [created(number) for number in range(1, 31)]
     with writer_of(path) as writer:
         for lesson in lessons:
             writer.submit(lesson)
         acknowledged = settled(writer)
-        assert stored(path) == lessons
+        assert events_in(path) == lessons
         assert writer.unwritten == 0
         assert writer.saving_error is None
 
@@ -117,7 +112,7 @@ def test_submit_unwritable_lesson_does_not_delay_others(path: Path) -> None:
     assert clashing.error is not None
     assert [each.stamped_at for each in (refused, written, clashing)] == ["", STAMP, ""]
     assert re.search(r"'once more'.*\b1\b", clashing.error)
-    assert stored(path) == [created(1, command_id="once more")]
+    assert events_in(path) == [created(1, command_id="once more")]
 
 
 def test_submit_full_disk_lessons_wait_in_order(path: Path) -> None:
@@ -136,20 +131,20 @@ def test_submit_full_disk_lessons_wait_in_order(path: Path) -> None:
         assert writer.saving_error is not None
         assert writer.saving_error.startswith(f"{path}: {KnowledgeCode.DISK_FULL.text}; ")
         waiting = writer.unwritten
-        assert len(stored(path)) == number - waiting
+        assert len(events_in(path)) == number - waiting
         for later in range(number + 1, number + 51):
             writer.submit(created(later))
         assert not writer.flush(timeout_s=0.05)
         assert writer.acknowledged() == []
         assert writer.unwritten == waiting + 50
-        assert len(stored(path)) == number - waiting
+        assert len(events_in(path)) == number - waiting
 
         connection.execute("PRAGMA max_page_count = 100000")
         acknowledged += settled(writer)
         assert writer.saving_error is None
 
     assert [each.sequence for each in acknowledged] == list(range(4, later + 1))
-    assert stored(path) == [created(each) for each in range(1, later + 1)]
+    assert events_in(path) == [created(each) for each in range(1, later + 1)]
 
 
 @contextmanager
@@ -177,7 +172,7 @@ def test_submit_failing_disk_lessons_wait_in_order(path: Path) -> None:
 
     assert error.startswith(f"{path}: {KnowledgeCode.DISK_FAILS.text}; ")
     assert [each.sequence for each in acknowledged] == list(range(2, 20))
-    assert stored(path) == [created(number) for number in range(1, 20)]
+    assert events_in(path) == [created(number) for number in range(1, 20)]
 
 
 def test_submit_locked_file_lessons_wait(path: Path) -> None:
@@ -198,7 +193,7 @@ def test_acknowledged_moved_file_is_empty_until_it_is_back(path: Path) -> None:
         assert writer.acknowledged() == []
         aside.rename(path)
         assert settled(writer) == [Acknowledgement("create-1", 1, None, STAMP)]
-    assert stored(path) == [created(1)]
+    assert events_in(path) == [created(1)]
 
 
 def test_submit_statistics_only_the_newest_is_written(path: Path) -> None:

@@ -1,6 +1,5 @@
 """Merge: lessons of another file are appended once, and undone together."""
 
-import math
 import shutil
 from collections.abc import Iterable
 from dataclasses import replace
@@ -22,9 +21,7 @@ from kurt2rt.core.rla.events import (
 )
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import BASIC
-from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
-from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -46,6 +43,7 @@ from tests.knowledge.lessons import (
     undone,
     withdrawn,
 )
+from tests.knowledge.reading import folded
 from tests.knowledge.refusals import refused
 
 FAR = 1000.0
@@ -69,12 +67,6 @@ def mine(path: Path) -> Path:
 @pytest.fixture
 def theirs(mine: Path, tmp_path: Path) -> Path:
     return Path(shutil.copy(mine, tmp_path / "theirs.knowledge"))
-
-
-def folded(path: Path) -> RlaSystem:
-    with Journal.read_only(path) as journal:
-        assert check_knowledge(journal) == []
-        return fold_journal(journal, radius=math.inf)
 
 
 def actions(path: Path) -> dict[int, str]:

@@ -9,26 +9,20 @@ from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import Lesson, LessonUndone, RlaCreated, RlaRewarded
 from kurt2rt.core.rla.lesson_history import LessonRecord
-from kurt2rt.core.rla.rla import CRITIC, Phase, Rla
+from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.core.rla.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
 from kurt2rt.core.teaching.commands import Undo
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding
 from kurt2rt.knowledge.journal.entry import JournalEntry
-from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.versions.undo import apply_plan, plan_redo, plan_undo
 from tests.core.reinforcement.helpers import SIGNALS_ONLY, Track
 from tests.core.rla.helpers import created as known_at
 from tests.knowledge.lessons import BINDING, STAMP, append, begun, created, deleted, origin, replaced, rewarded
+from tests.knowledge.reading import folded
 from tests.knowledge.refusals import refused
 from tests.teacher.helpers import teach
-
-
-def rlas(path: Path) -> tuple[Rla, ...]:
-    with Journal.read_only(path) as journal:
-        assert check_knowledge(journal) == []
-        return fold_journal(journal, radius=1.0).rlas
 
 
 def undo(path: Path, lesson: str | None = None) -> LessonRecord:
@@ -59,7 +53,7 @@ def test_redo_last_undo_comes_first_with_its_value(path: Path) -> None:
     undo(path, "blame-1")
     undo(path)
     assert redo(path) == LessonRecord(replaced(2, "left", "forward"))
-    assert rlas(path)[1].action == "left"
+    assert folded(path).rlas[1].action == "left"
     assert redo(path) == LessonRecord(blame)
     with Journal.read_only(path) as journal:
         assert journal.statistics().values == {1: 0.25}
@@ -73,10 +67,10 @@ def test_apply_plan_changed_file_is_refused(path: Path) -> None:
     assert [record.event for record in planned.lessons] == [created(2)]
     append(path, created(3))
     apply_plan(planned, STAMP)  # not the lesson that came meanwhile
-    assert rlas(path) == (created(1).rla, created(3).rla)
+    assert folded(path).rlas == (created(1).rla, created(3).rla)
     with refused(KnowledgeCode.LESSON_REFUSED, outcome=RefusalCode.UNDONE_ALREADY):
         apply_plan(planned, STAMP)
-    assert rlas(path) == (created(1).rla, created(3).rla)
+    assert folded(path).rlas == (created(1).rla, created(3).rla)
 
 
 def redo_all_of(path: Path, teacher: str) -> tuple[tuple[LessonRecord, ...], tuple[Outcome, ...]]:
@@ -94,13 +88,13 @@ def test_redo_all_of_a_teacher_restores_all(path: Path) -> None:
             replaced(2, "left", "forward"),
         )
         journal.append([JournalEntry(event, STAMP) for event in taught])
-    before = rlas(path)
+    before = folded(path).rlas
     undo_all_of(path, "Hertha")
-    assert rlas(path) == ()
+    assert folded(path).rlas == ()
     redone, reasons = redo_all_of(path, "Hertha")
     assert [record.event for record in redone] == [*(created(number) for number in (1, 2, 3)), *taught]
     assert reasons == ()
-    assert rlas(path) == before
+    assert folded(path).rlas == before
     with refused(KnowledgeCode.NO_UNDONE_LESSON_BY, teacher="Hertha"):
         redo_all_of(path, "Hertha")
 
@@ -139,7 +133,7 @@ def test_undo_all_of_the_critic_keeps_other_lessons(path: Path) -> None:
 
     assert [record.event.origin.command_id for record in told] == ["replace-3-left", "praise-3", "delete-2", "blame-1"]
     assert all(record.undone for record in told)
-    assert rlas(path) == (created(1).rla, created(2).rla, created(3).rla)
+    assert folded(path).rlas == (created(1).rla, created(2).rla, created(3).rla)
     with Journal.read_only(path) as journal:
         undos = [event for event in journal.events() if isinstance(event, LessonUndone)]
         assert [event.lesson for event in undos] == [record.event.origin.command_id for record in told]

@@ -16,12 +16,10 @@ from hal.robot_settings import load_robot
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
 from kurt2rt.core.rla.lesson_history import lesson_stack
 from kurt2rt.core.rla.rla import Origin, Phase, Rla
-from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import BeginSession, Resume, Watch
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.entry import JournalEntry
-from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
@@ -33,6 +31,7 @@ from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.trial import compatible_runs, newest_compatible_run
 from kurt2rt.runs.replay.undo_preview import preview, preview_on_newest
 from tests.cli.helpers import CommandLine
+from tests.knowledge.reading import folded
 from tests.knowledge.refusals import refused
 from tests.runs.replay.stories import NAME, Scene, record_story
 
@@ -90,12 +89,6 @@ def knowledge(tmp_path: Path, lessons: list[TeachingEvent]) -> Path:
         far = unneeded(lessons), unneeded(lessons, 2)
         journal.append([JournalEntry(event, STAMP) for event in (*lessons, *far)])
     return path
-
-
-def folded(path: Path) -> RlaSystem:
-    with Journal.read_only(path) as journal:
-        assert check_knowledge(journal) == []
-        return fold_journal(journal, radius=1.0)
 
 
 def test_no_run_or_none_that_fits_is_refused(knowledge: Path, recordings: Path, tmp_path: Path) -> None:
