@@ -17,18 +17,9 @@ from kurt2rt.core.message_fields import WireError
 from kurt2rt.core.rla.rla import Phase
 
 _MOST_BYTES = 1600
-_STRANGE_PATHS = (
-    (),
-    ("",),
-    ("..", "stop"),
-    ("state", "x"),
-    ("STOP",),
-    ("world", "..", "stop"),
-    ("drive\x00",),
-    ("a" * 255,),
-    ("\u202estop",),
-    (".well-known", "core", "x"),
-    ("world",) * 40,
+_STRANGE_PATHS: tuple[tuple[str, ...], ...] = (
+    *((), ("",), ("..", "stop"), ("state", "x"), ("STOP",), ("world", "..", "stop"), ("drive\x00",), ("a" * 255,)),
+    *(("\u202estop",), (".well-known", "core", "x"), ("world",) * 40),
 )
 _METHODS = (aiocoap.GET, aiocoap.PUT, aiocoap.DELETE, aiocoap.FETCH, aiocoap.PATCH, aiocoap.iPATCH)
 _TRICKS = ("../../x", "x\x00y", "\ud7ff\u202e", "/etc/passwd", "a" * 65, "a" * 900, "", "\n", "😀" * 70)
@@ -41,20 +32,9 @@ _ODD: tuple[Any, ...] = (
     *_TRICKS,
 )
 _RAW = (
-    b"",
-    b"\x81" * 900,
-    b"\xa1" * 900,
-    b"\x9f" * 500 + b"\xff" * 500,
-    b"\x9b" + b"\xff" * 8,
-    b"\x5b" + b"\x7f" * 8,
-    b"\x7b" + b"\x00" * 7 + b"\xff",
-    b"\xbf\xff",
-    b"\xd9\xd9\xf7\x80",
-    b"\xc2\x58\xff" + b"\xff" * 255,
-    b"\xd8\x1c\x81\xd8\x1d\x00",
-    b"\xff",
-    b"\x80\x80",
-    b"\x62\xc3\x28",
+    *(b"", b"\x81" * 900, b"\xa1" * 900, b"\x9f" * 500 + b"\xff" * 500, b"\x9b" + b"\xff" * 8, b"\x5b" + b"\x7f" * 8),
+    *(b"\x7b" + b"\x00" * 7 + b"\xff", b"\xbf\xff", b"\xd9\xd9\xf7\x80", b"\xc2\x58\xff" + b"\xff" * 255),
+    *(b"\xd8\x1c\x81\xd8\x1d\x00", b"\xff", b"\x80\x80", b"\x62\xc3\x28"),
 )
 
 

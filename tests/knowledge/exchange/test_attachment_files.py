@@ -8,24 +8,9 @@ from kurt2rt.knowledge.exchange.attachment_files import LARGEST_BYTES, MOST_FILE
 @pytest.mark.parametrize(
     "name",
     [
-        "",
-        "..",
-        "settings/../../x",
-        "settings/..",
-        "settings/./x",
-        "settings//x",
-        "settings/",
-        "/etc/x",
-        "C:/x",
-        "c:x",
-        "settings\\..\\x",
-        "settings/nul",
-        "settings/COM1.yaml",
-        "settings/a\nb",
-        "settings/a\0b",
-        "settings/\ud800",
-        "settings/" + "x" * 256,
-        "x/" * 600 + "x",
+        *("", "..", "settings/../../x", "settings/..", "settings/./x", "settings//x", "settings/", "/etc/x"),
+        *("C:/x", "c:x", "settings\\..\\x", "settings/nul", "settings/COM1.yaml", "settings/a\nb", "settings/a\0b"),
+        *("settings/\ud800", "settings/" + "x" * 256, "x/" * 600 + "x"),
     ],
 )
 def test_unsafe_reason_escaping_names_are_refused(name: str) -> None:

@@ -11,41 +11,31 @@ from tests.knowledge.lessons import BINDING, begun, entry, tamper
 from tests.knowledge.refusals import refused
 
 ENDLESS = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)"
+STAYS = "CREATE TRIGGER lesson_stays BEFORE DELETE ON lesson"
 DEEP = "[" * 100_000
 
 
-@pytest.mark.parametrize(
-    ("statements", "kind", "name"),
-    [
-        (
-            (
-                "DROP TABLE lesson",
-                f"CREATE VIEW lesson AS {ENDLESS} "
-                "SELECT i AS sequence, i AS command_id, '' AS stamped_at, '' AS event, 0 AS checksum FROM n",
-            ),
-            *("view", "lesson"),
-        ),
-        (
-            ("DROP TABLE binding", f"CREATE VIEW binding AS {ENDLESS} SELECT i AS key, i AS value FROM n"),
-            *("view", "binding"),
-        ),
-        (
-            ("CREATE TRIGGER extra AFTER INSERT ON lesson BEGIN UPDATE binding SET value = '' ; END",),
-            *("trigger", "extra"),
-        ),
-        (
-            (
-                "DROP TRIGGER lesson_stays",
-                "CREATE TRIGGER lesson_stays BEFORE DELETE ON lesson BEGIN SELECT 1; END",
-            ),
-            *("trigger", "lesson_stays"),
-        ),
-        (("CREATE INDEX mine ON lesson (length(event))",), "index", "mine"),
-        (("CREATE VIRTUAL TABLE words USING fts5(text)",), "table", "words"),
-    ],
-    ids=["endless lessons", "endless binding", "foreign trigger", "changed trigger", "index", "virtual table"],
+ENDLESS_LESSONS = (
+    f"{ENDLESS} SELECT i AS sequence, i AS command_id, '' AS stamped_at, '' AS event, 0 AS checksum FROM n"
 )
-def test_open_foreign_schema_is_refused(path: Path, statements: tuple[str, ...], kind: str, name: str) -> None:
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "statements"),
+    [
+        ("view", "lesson", ["DROP TABLE lesson", f"CREATE VIEW lesson AS {ENDLESS_LESSONS}"]),
+        (
+            "view",
+            "binding",
+            ["DROP TABLE binding", f"CREATE VIEW binding AS {ENDLESS} SELECT i AS key, i AS value FROM n"],
+        ),
+        ("trigger", "extra", ["CREATE TRIGGER extra AFTER INSERT ON lesson BEGIN UPDATE binding SET value = '' ; END"]),
+        ("trigger", "lesson_stays", ["DROP TRIGGER lesson_stays", f"{STAYS} BEGIN SELECT 1; END"]),
+        ("index", "mine", ["CREATE INDEX mine ON lesson (length(event))"]),
+        ("table", "words", ["CREATE VIRTUAL TABLE words USING fts5(text)"]),
+    ],
+)
+def test_open_foreign_schema_is_refused(path: Path, kind: str, name: str, statements: list[str]) -> None:
     tamper(begun(path), *statements)
     with refused(KnowledgeCode.FOREIGN_SCHEMA, kind=kind, name=name):
         Journal.open(path, BINDING)
