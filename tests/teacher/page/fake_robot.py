@@ -16,7 +16,7 @@ from kurt2rt.channel.protocol.limits import VERSION
 from kurt2rt.channel.protocol.requests import CommandRequest
 from kurt2rt.channel.protocol.simulation import NO_EXAM, ExamStatus, SimulationView, TaskName, WorldView
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.core.decision.standing import DRIVES, Standing
+from kurt2rt.core.decision.standing import Standing
 from kurt2rt.core.message_fields import checks_of
 from kurt2rt.core.perception.sensor_words import infrared_law
 from kurt2rt.core.teaching.commands import Single
@@ -26,43 +26,12 @@ from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.client.link_quality import LinkQuality
 from simbridge.contracts.simulation import SimulatedPlace
-from tests.channel.states import standing_in
+from tests.channel.states import standing_in, state
 
-A_STATE = State(
-    boot=b"boot",
-    tick=100,
-    phase=1,
-    infrared_counts=(180, 176, 178, 175, 75, 74, 76, 78, 120, 90, 105, 70, 71, 72, 210, 82, 160, 70),
-    infrared_age_s=0.01,
-    bumpers=0,
-    left_m_s=0.3,
-    right_m_s=0.3,
-    cause="rla",
-    action="forward",
-    rla=1,
-    nearest=1,
-    nearest_action="forward",
-    distance=300.0,
-    radius=700.0,
-    taught_by="phone",
-    taught_at="2026-11-21T12:04:00Z",
-    question=(),
-    teacher=None,
-    by_hand=False,
-    stopped=None,
-    rlas=1,
-    lessons=1,
-    unsaved=0,
-    session=None,
-    clock_s=0.0,
-    guard=(),
-    trouble="",
-    late_p99_ms=0.2,
-    missed_ticks=0,
-    place=None,
-    standing=DRIVES,
-    way_m=(0.0, 0.0),
-)
+_COUNTS = (180, 176, 178, 175, 75, 74, 76, 78, 120, 90, 105, 70, 71, 72, 210, 82, 160, 70)
+_FORWARD = {"cause": "rla", "action": "forward", "rla": 1, "nearest": 1, "distance": 300.0, "radius": 700.0}
+_BEGUN = {"rlas": 1, "lessons": 1, "question": (), "teacher": None, "session": None, "clock_s": 0.0, "place": None}
+A_STATE = state(tick=100, phase=1, infrared_counts=_COUNTS, left_m_s=0.3, right_m_s=0.3, **_FORWARD, **_BEGUN)
 A_PLACE = SimulatedPlace(x_m=0.54, y_m=3.63, heading_rad=0.0, laps=0.0, collisions=0, world_version=0)
 
 
