@@ -11,6 +11,7 @@ from typing import Any, cast
 import anyio
 import pytest
 
+from kurt2rt.channel.protocol.hello import HELLO
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.limits import VERSION
 from kurt2rt.channel.protocol.requests import (
@@ -26,7 +27,6 @@ from kurt2rt.channel.security.pairing import Pairing, pair, renew
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal
 from kurt2rt.core.decision.goal import PartialGoal
 from kurt2rt.core.outcome import Outcome, RefusalCode
-from kurt2rt.core.perception.sensor_words import InfraredLaw
 from kurt2rt.core.rla.rla import MID, Phase
 from kurt2rt.core.teaching.commands import (
     Correct,
@@ -46,6 +46,7 @@ from kurt2rt.core.teaching.commands import (
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError, local_refusal
 from tests.channel.lossy_link import LossyLink, Weather
+from tests.teacher.page.fake_robot import A_HELLO
 from tests.teacher.stand_in_robot import StandInRobot, agrees, in_a_task_of_its_own, stand_in_robot
 
 
@@ -54,32 +55,7 @@ def open_exchanges(client: TeacherClient) -> int:
     return len(client._open.requests._coap.request_interfaces[0].outgoing_requests)
 
 
-LAW = InfraredLaw(86.0, 0.04, 64.0, 0.1, 0.6, 80.0)
-HELLO = {
-    "v": VERSION,
-    "boot": b"boot",
-    "tick": 7,
-    "robot": "kurt2-indoor",
-    "task": "wall_following",
-    "radius": 700.0,
-    "period_s": 0.01,
-    "actions": ["forward", "spin_left"],
-    "behaviours": ["straight_on", "turn_left"],
-    "appraisals": [["bad", -1], ["neutral", 0], ["good", 1]],
-    "trusted_from": 0.8,
-    "mid": ["history", 12, 6.0],
-    "seeks": True,
-    "sensors": [["front", "F", 0.2, 0.0, 0.0]],
-    "outline": [0.434, 0.33],
-    "max_m_s": 0.6,
-    "simulated": True,
-    "phases": ["supervised", "corrections"],
-    "what": "Teach it to follow a wall",
-    "law": [*LAW],
-    "track_m": 0.4,
-}
-
-
+INTRODUCED = Reply(ReplyStatus.DONE, HELLO.plain_of(A_HELLO))
 HELD = Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
 
 
@@ -183,7 +159,7 @@ async def test_hello_of_other_version_raises_with_remedy(client: TeacherClient, 
 
 async def test_correct_earlier_counts_driven_time_alone(client: TeacherClient, robot: StandInRobot) -> None:
     async def introduces_itself(request: object) -> Reply:
-        return Reply(ReplyStatus.DONE, HELLO) if isinstance(request, HelloRequest) else await agrees(request)
+        return INTRODUCED if isinstance(request, HelloRequest) else await agrees(request)
 
     robot.mind = introduces_itself
     robot.showing = False
@@ -228,7 +204,7 @@ async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: St
 
 async def test_each_command_says_on_which_picture_it_was_given(client: TeacherClient, robot: StandInRobot) -> None:
     async def introduces_itself(request: object) -> Reply:
-        return Reply(ReplyStatus.DONE, HELLO) if isinstance(request, HelloRequest) else await agrees(request)
+        return INTRODUCED if isinstance(request, HelloRequest) else await agrees(request)
 
     robot.mind = introduces_itself
     robot.showing = False
@@ -337,7 +313,7 @@ async def test_stop_ends_moving_commands_under_way(client: TeacherClient, robot:
 
     async def hears_only_stops(request: object) -> Reply:
         if isinstance(request, HelloRequest):
-            return Reply(ReplyStatus.DONE, HELLO)
+            return INTRODUCED
         return await (never_answers if isinstance(request, kind) else agrees)(request)
 
     robot.mind = hears_only_stops
@@ -447,7 +423,7 @@ async def test_stop_unanswered_keeps_limited_copies(
 async def test_stop_unanswered_is_superseded_by_later_command(pairing: Pairing, robot: StandInRobot, wish: str) -> None:
     async def does_not_hear_stops(request: object) -> Reply:
         if isinstance(request, HelloRequest):
-            return Reply(ReplyStatus.DONE, HELLO)
+            return INTRODUCED
         return await (never_answers if isinstance(request, StopRequest) else agrees)(request)
 
     robot.mind = does_not_hear_stops
