@@ -131,10 +131,7 @@ TASK = wall_following()
 
 
 async def taught_on_bus(
-    task: TaskSettings,
-    seed: int,
-    events: Sequence[TeachingEvent] = (),
-    on_second: Callable[[float], None] = ignore,
+    task: TaskSettings, seed: int, events: Sequence[TeachingEvent] = (), on_second: Callable[[float], None] = ignore
 ) -> GivenLesson:
     """Give a lesson in lockstep over the CAN bus, to a robot that knows `events`."""
     store = InMemoryEventStore()

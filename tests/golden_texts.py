@@ -75,12 +75,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "sentences about a decision": why.sentences,
         "summaries of a run": why.summaries,
     },
-    "robot": {
-        "questions": robot.questions,
-        "goals": robot.goals,
-        "lessons": robot.lessons,
-        "features": robot.features,
-    },
+    "robot": {"questions": robot.questions, "goals": robot.goals, "lessons": robot.lessons, "features": robot.features},
     "studies": {
         "targets": studies.targets,
         "results": studies.results,

@@ -70,10 +70,7 @@ def test_unknown_robot_is_refused_with_known_names_a_path_loads(tmp_path: Path) 
     mine.write_text(ROBOT.replace("kurt2-indoor", "mine", 1))
     assert load_kurt2(str(mine)).name == "mine"
     for missing in ("kurt3", str(tmp_path / "other.yaml"), str(tmp_path), ""):
-        with pytest.raises(
-            SettingsError,
-            match=r": kurt2(, \w+)*(;.* kurt2\?)?$",
-        ):
+        with pytest.raises(SettingsError, match=r": kurt2(, \w+)*(;.* kurt2\?)?$"):
             find_config("robots", missing)
 
 
@@ -183,46 +180,22 @@ def test_a_key_without_a_value_is_named(some: list[Place], tmp_path: Path) -> No
         ("cycle_s: 0.01 ", "cycle_s: true ", r"^cycle_s: .*True\)"),
         ("cycle_s: 0.01 ", "cycle_s: 10.1 ", r"^cycle_s: .*10\.1\)"),
         ("cycle_s: 0.01 ", "cycle_s: 0 ", r"^cycle_s: .*0\)"),
-        (
-            "floor_counts: 70",
-            "floor_counts: 70.5",
-            r"^infrared\.floor_counts: .*70\.5\)",
-        ),
-        (
-            "floor_counts: 70",
-            "floor_counts: .nan",
-            r"^infrared\.floor_counts: .*nan\)",
-        ),
+        ("floor_counts: 70", "floor_counts: 70.5", r"^infrared\.floor_counts: .*70\.5\)"),
+        ("floor_counts: 70", "floor_counts: .nan", r"^infrared\.floor_counts: .*nan\)"),
         ("floor_counts: 70", "floor_counts: 1024", r"^infrared\.floor_counts: .*1023"),
         ("mode: SPEED_CM", "mode: FAST", r"^can\.speed_mode: .*'FAST'\)"),
-        (
-            "channel: ADC07",
-            "channel: ADC15",
-            r"^infrared\.sensors\.0\.channel: .*ADC14",
-        ),
+        ("channel: ADC07", "channel: ADC15", r"^infrared\.sensors\.0\.channel: .*ADC14"),
         *(
-            (
-                "channel: ADC07",
-                f"channel: {current}",
-                rf"^infrared\.sensors\.0\.channel: .*{current}",
-            )
+            ("channel: ADC07", f"channel: {current}", rf"^infrared\.sensors\.0\.channel: .*{current}")
             for current in ("ADC12", "ADC13")
         ),
         ("channel: ADC07", "channel: ADC08", "^infrared: .*channel ADC08"),
         ("name: s1,", "name: s2,", "^infrared: .*name s2"),
         ("far_m: 0.60", "far_m: 0.05", "^infrared: .*near_m < far_m"),
         ("raw_drive: [0, 400", "raw_drive: [400, 0", "^motors: .*raw_drive"),
-        (
-            "raw_drive: [0, 400",
-            "raw_drive: [400",
-            "^motors: .*raw_drive .*raw_speed_m_s",
-        ),
+        ("raw_drive: [0, 400", "raw_drive: [400", "^motors: .*raw_drive .*raw_speed_m_s"),
         ("  maximum_speed_m_s: 0.6", "  maximum_speed_m_s: 1.0", r"motors\.maximum_speed_m_s \(0\.9\)"),
-        (
-            "  - {name: front left, end: front}",
-            "  - front left",
-            r"^bumpers\.0: .*'front left'",
-        ),
+        ("  - {name: front left, end: front}", "  - front left", r"^bumpers\.0: .*'front left'"),
         ("end: front}", "end: side}", r"^bumpers\.0\.end: .*'front' .*'rear' .*'side'"),
         ("cycle_s: 0.01 ", "  #", r"^cycle_s: "),
     ],
@@ -237,11 +210,7 @@ def test_a_wrong_value_is_named_with_its_key_and_what_is_allowed(old: str, new: 
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        (
-            "gain_per_m",
-            "gian_per_m",
-            "gian_per_m: .*: kind, name, front_sensor, back_sensor,",
-        ),
+        ("gain_per_m", "gian_per_m", "gian_per_m: .*: kind, name, front_sensor, back_sensor,"),
         ("angle_deg", "angle", "angle: .*: kind, name, angle_deg, speed_m_s"),
         (
             "kind: motor",
@@ -283,10 +252,7 @@ def test_task_with_bad_behaviour_names_is_refused(behaviours: str, told: str, tm
 @pytest.mark.parametrize(
     ("behaviours", "told"),
     [
-        (
-            ["straight_on", "about_turn"],
-            "^policy: .*straight_on, turn_left, ",
-        ),
+        (["straight_on", "about_turn"], "^policy: .*straight_on, turn_left, "),
         (None, "^policy: .*turn_right, .*''"),
         ([f"turn_{number}" for number in range(65)], "^behaviours: .*64"),
     ],
@@ -303,12 +269,7 @@ def test_a_policy_is_asked_only_for_what_it_knows(behaviours: list[str] | None, 
 
 @pytest.mark.parametrize(
     ("mid", "told"),
-    [
-        ("turns", ""),
-        ("Turns", "mid.name: "),
-        ("", "^mid: "),
-        ("{name: mine}", r"^mid\.settings\.junctions: "),
-    ],
+    [("turns", ""), ("Turns", "mid.name: "), ("", "^mid: "), ("{name: mine}", r"^mid\.settings\.junctions: ")],
 )
 def test_a_task_may_have_a_mid_level_by_name_or_by_its_settings(mid: str, told: str, tmp_path: Path) -> None:
     path = tmp_path / "task.yaml"
@@ -358,11 +319,7 @@ def test_set_key_leads_to_a_place_of_a_list() -> None:
     ("key", "value", "told"),
     [
         ("learning.radios", "3", r"learning\.radios: .*: radius"),
-        (
-            "learning.radius",
-            "near",
-            r"learning\.radius: .*'near'.*--set learning\.radius",
-        ),
+        ("learning.radius", "near", r"learning\.radius: .*'near'.*--set learning\.radius"),
         ("learning", "{radius: 3}", r"learning\.history_weight: .* 2 .*--set learning"),
         ("policy.kind", "walls", r"policy\.kind: .*'walls'; .*: circle, "),
         ("learning.radius", "-1", r"learning\.radius: .*-1\)"),

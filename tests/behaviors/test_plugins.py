@@ -106,10 +106,7 @@ def test_action_of_a_plugin_drives_and_is_lost_after_an_error(plugin_folder: Pat
 @pytest.mark.parametrize(
     ("action", "told"),
     [
-        (
-            {"name": "wiggle", "speed_m_s": 0.0},
-            r"\(wiggle\): parts_e:Wiggling cannot build it: .*is 0",
-        ),
+        ({"name": "wiggle", "speed_m_s": 0.0}, r"\(wiggle\): parts_e:Wiggling cannot build it: .*is 0"),
         ({"name": "wiggle", "speed": 0.1}, r"plugin\.speed: no such key; allowed here: kind, name, speed_m_s, "),
         ({"name": "forward"}, "two actions share the name forward"),
     ],

@@ -14,10 +14,7 @@ BASIC = (CONFIG_DIR / "repertoires" / "basic.yaml").read_text()
 
 @pytest.mark.parametrize(
     ("old", "new", "told"),
-    [
-        ("front_sensor: s1,", "front_sensor: s19,", " s19;"),
-        ("back_sensor: s2,", "back_sensor: s1,", " s1 and s1 "),
-    ],
+    [("front_sensor: s1,", "front_sensor: s19,", " s19;"), ("back_sensor: s2,", "back_sensor: s1,", " s1 and s1 ")],
 )
 def test_load_repertoire_wrong_sensor_names_the_entry(old: str, new: str, told: str, tmp_path: Path) -> None:
     path = tmp_path / "repertoire.yaml"

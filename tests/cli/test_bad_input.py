@@ -68,13 +68,7 @@ def few_actions(folder: Path) -> Path:
     return changed("tasks", "wall_following", folder, lambda content: content.update(repertoire=str(repertoire)))
 
 
-@pytest.mark.parametrize(
-    ("another_task", "why"),
-    [
-        (other_features, "mine.knowledge: "),
-        (few_actions, "RLA 1 "),
-    ],
-)
+@pytest.mark.parametrize(("another_task", "why"), [(other_features, "mine.knowledge: "), (few_actions, "RLA 1 ")])
 def test_misfit_knowledge_is_refused_by_exam_lesson_and_run(
     kurt2rt: CommandLine, tmp_path: Path, lessons: Path, another_task: Callable[[Path], Path], why: str
 ) -> None:

@@ -218,12 +218,7 @@ class Cluster:
     def lesson(self, out: str) -> "subprocess.Popen[str]":
         words = (sys.executable, "-m", "kurt2rt.cli.main", *LESSON, "--cluster", str(self.file), "--out", out)
         return subprocess.Popen(
-            words,
-            cwd=self._folder,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            env=ENVIRONMENT,
+            words, cwd=self._folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT
         )
 
 

@@ -89,10 +89,7 @@ async def test_next_run_with_unknown_world_or_task_is_refused(
 @pytest.mark.parametrize("fresh", [False, True])
 async def test_next_run_with_a_file_that_has_a_writer_is_refused(tmp_path: Path, *, fresh: bool) -> None:
     runs = runs_in(tmp_path)
-    with (
-        open_knowledge(tmp_path / "eight.knowledge", ROBOT, load_task("eight")),
-        refused(KnowledgeCode.ANOTHER_WRITER),
-    ):
+    with open_knowledge(tmp_path / "eight.knowledge", ROBOT, load_task("eight")), refused(KnowledgeCode.ANOTHER_WRITER):
         await runs.prepare(None, "eight", fresh, TEACHER)
 
 

@@ -35,12 +35,7 @@ def test_run_auto_leaves_the_usual_file_alone(kurt2rt: CommandLine, tmp_path: Pa
 
 
 @pytest.mark.parametrize(
-    "words",
-    [
-        ("run", "--seconds", "0.1", "--teacher", "none", "--no-record"),
-        ("pair", "phone"),
-    ],
-    ids=" ".join,
+    "words", [("run", "--seconds", "0.1", "--teacher", "none", "--no-record"), ("pair", "phone")], ids=" ".join
 )
 def test_var_is_made_for_this_user_alone(kurt2rt: CommandLine, tmp_path: Path, words: tuple[str, ...]) -> None:
     assert kurt2rt(*words).exit_code == 0

@@ -8,13 +8,7 @@ from pathlib import Path
 import pytest
 
 from config import plugins
-from config.plugins import (
-    PluginError,
-    PluginKind,
-    UnknownPluginError,
-    loaded_plugins,
-    settings_from_elsewhere,
-)
+from config.plugins import PluginError, PluginKind, UnknownPluginError, loaded_plugins, settings_from_elsewhere
 from config.settings import SettingsError
 from config.settings_files import TASKS, find_config
 from tests.plugin_packages import install

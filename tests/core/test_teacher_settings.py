@@ -4,11 +4,7 @@ import random
 from itertools import pairwise
 
 from kurt2rt.core.task_settings import load_task, taught_by
-from kurt2rt.core.teacher_settings import (
-    SUPERHUMAN,
-    Delay,
-    load_teacher,
-)
+from kurt2rt.core.teacher_settings import SUPERHUMAN, Delay, load_teacher
 
 PEOPLE = ("attentive", "ordinary", "slow")
 DRAWS = 2000

@@ -130,9 +130,7 @@ def test_manual_drive_with_faulty_level_credits_no_rla(driving: Corridor, monkey
     assert driving.statistics.uses == uses
 
 
-def test_attended_robot_without_teacher_stands_or_asks(
-    attended: Corridor,
-) -> None:
+def test_attended_robot_without_teacher_stands_or_asks(attended: Corridor) -> None:
     assert causes(attended, 5, 100) == [DecisionCause.UNATTENDED] * 5
     assert causes(attended, 5, 400) == [DecisionCause.UNKNOWN] * 5
     assert causes(attended, 5, 100) == [DecisionCause.UNATTENDED] * 5

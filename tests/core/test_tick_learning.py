@@ -136,11 +136,7 @@ def test_no_reward_and_no_opinion_moves_a_robot_that_stands(driving: Drive) -> N
 def withdrawn_and_neighbour() -> list[TeachingEvent]:
     """Return the events of an RLA near obstacles whose action was withdrawn, and of a neighbour of its condition."""
     here = Drive().run(counts=NEAR).situation.vector
-    return [
-        created(1, tuple(here.tolist()), "forward"),
-        withdrawn(1),
-        created(2, tuple((here + 5.0).tolist()), "back"),
-    ]
+    return [created(1, tuple(here.tolist()), "forward"), withdrawn(1), created(2, tuple((here + 5.0).tolist()), "back")]
 
 
 def test_without_teacher_neighbours_answer_for_withdrawn_rla() -> None:

@@ -205,9 +205,7 @@ def test_one_goal_is_planned_for_in_a_tick_however_many_are_sent(block: Block) -
     assert told(block.seek()).accepted
 
 
-def test_correction_to_a_known_way_selects_it_without_a_lesson(
-    block: Block,
-) -> None:
+def test_correction_to_a_known_way_selects_it_without_a_lesson(block: Block) -> None:
     block.teach("straight_on", next_to=True)
     assert block.run().behaviour == "turn_left"
     record = block.say(Correct, "straight_on", None, MID)

@@ -12,16 +12,7 @@ from kurt2rt.core.outcome import Field, Outcome, RefusalCode
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.teaching.commands import (
-    Command,
-    Correct,
-    Pursue,
-    ReplaceAction,
-    Resume,
-    Stop,
-    Teach,
-    Undo,
-)
+from kurt2rt.core.teaching.commands import Command, Correct, Pursue, ReplaceAction, Resume, Stop, Teach, Undo
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime

@@ -11,17 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from tests.crash.operations import (
-    FolderSynced,
-    Made,
-    Operation,
-    Synced,
-    SyncFailed,
-    Told,
-    Truncated,
-    Unlinked,
-    Written,
-)
+from tests.crash.operations import FolderSynced, Made, Operation, Synced, SyncFailed, Told, Truncated, Unlinked, Written
 
 SECTOR_BYTES = 512
 _ALL_SUBSETS_UP_TO = 6

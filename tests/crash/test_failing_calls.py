@@ -14,11 +14,7 @@ CHILD = "tests.crash.teach_a_little"
 ERRORS = ("ENOSPC", "EIO", "EINTR")
 EVERY = {"fcntl": 6}
 """Every sixth lock call only: if SQLite cannot unlock it tries for 10 s, and the writer then reconnects."""
-SOME = (
-    FailingCall("pwrite64", 9, "ENOSPC"),
-    FailingCall("pwrite64", 11, "EINTR"),
-    FailingCall("fdatasync", 2, "EIO"),
-)
+SOME = (FailingCall("pwrite64", 9, "ENOSPC"), FailingCall("pwrite64", 11, "EINTR"), FailingCall("fdatasync", 2, "EIO"))
 
 
 @pytest.fixture(autouse=True)

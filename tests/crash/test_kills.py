@@ -10,9 +10,7 @@ from tests.crash.kill_story import KillStory
 KILLS_OF_A_SHARD = 50
 
 
-async def test_killed_program_robot_stands_and_no_lesson_is_lost(
-    tmp_path: Path,
-) -> None:
+async def test_killed_program_robot_stands_and_no_lesson_is_lost(tmp_path: Path) -> None:
     tally = await KillStory(tmp_path, f"shared:killed-twice-{os.getpid()}", seed=7, longest_life_s=50.0).run(kills=2)
     assert tally.kills == 2
     assert tally.stored >= tally.acknowledged > 0

@@ -57,9 +57,7 @@ def test_power_cut_keeps_every_acknowledged_lesson(tmp_path: Path, every: int) -
     assert after_each_cut(before, disk.operations, path, seed=1, every=every) > LEAST_STATES // every
 
 
-def test_next_program_syncs_writes_of_a_killed_one_first(
-    tmp_path: Path,
-) -> None:
+def test_next_program_syncs_writes_of_a_killed_one_first(tmp_path: Path) -> None:
     """The kernel shows the next program what the first never synced; the teacher's device sends its lesson again."""
     assert killed_after(tmp_path, range(9)) > LEAST_STATES // 4
 

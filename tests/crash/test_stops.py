@@ -28,9 +28,7 @@ def require_safe(stopped: Stopped) -> None:
     assert stopped.most_at_once <= MOST_AT_ONCE
 
 
-async def test_halted_program_drives_on_at_once_or_only_after_resume(
-    tmp_path: Path,
-) -> None:
+async def test_halted_program_drives_on_at_once_or_only_after_resume(tmp_path: Path) -> None:
     async with a_robot_that_turns(tmp_path, "shared:halted") as story:
         stopped = await story.stop_for(0.05)
         while stopped.gap_s > SHORT_S:  # the machine has much to do

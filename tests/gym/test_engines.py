@@ -94,10 +94,7 @@ def test_robot_that_leaves_the_batch_goes_on_over_the_bus() -> None:
     guard = ROBOT.guard.model_copy(update={"frozen_infrared_s": 0.11})
     robot = ROBOT.model_copy(update={"guard": guard})
     setup, factory = setup_of(robot), Kurt2SimulationFactory(robot)
-    with (
-        closing(BusDrive(factory.open("a", 3, PURPOSE), setup)) as bus,
-        closing(BatchDrive(factory, setup)) as batch,
-    ):
+    with closing(BusDrive(factory.open("a", 3, PURPOSE), setup)) as bus, closing(BatchDrive(factory, setup)) as batch:
         for _ in range(200):
             one, other = bus.drive("spin_left", 10), batch.drive("spin_left", 10)
             assert one.situation.tobytes() == other.situation.tobytes()

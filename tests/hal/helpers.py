@@ -67,11 +67,7 @@ def controls(bus: CanBus) -> list[Control]:
 
 
 def fresh(
-    time_s: float,
-    bumpers: int = 0,
-    infrared_age_s: float = 0.0,
-    encoder_age_s: float = 0.0,
-    bumper_age_s: float = 0.0,
+    time_s: float, bumpers: int = 0, infrared_age_s: float = 0.0, encoder_age_s: float = 0.0, bumper_age_s: float = 0.0
 ) -> SensorReadings:
     return SensorReadings(time_s, (200,) * len(SENSORS), infrared_age_s, 0, 0, encoder_age_s, bumpers, bumper_age_s)
 

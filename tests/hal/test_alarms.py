@@ -271,14 +271,7 @@ def frozen_but(ride: Ride, *alive: str) -> list[can.Message]:
     return [*still, *(frame for frame in ride.frames() if frame.arbitration_id not in repeated)]
 
 
-@pytest.mark.parametrize(
-    ("alive", "board"),
-    [
-        ((), "ADC*"),
-        (("BDC00_03",), "ADC*"),
-        (("ADC08_11",), "BDC*"),
-    ],
-)
+@pytest.mark.parametrize(("alive", "board"), [((), "ADC*"), (("BDC00_03",), "ADC*"), (("ADC08_11",), "BDC*")])
 def test_board_frozen_for_a_second_stops_the_robot(ride: Ride, alive: tuple[str, ...], board: str) -> None:
     grants = []
     for _ in range(105):

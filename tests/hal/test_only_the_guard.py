@@ -11,13 +11,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("config", "hal", "behaviors", "kurt2rt", "simbridge")
 RAW_BUS = {"Bus", "BusABC", "ThreadSafeBus", "VirtualBus", "SocketcanBus", "interface", "interfaces"}
-KINDS_OF_BUS = {
-    "hal/bus.py",
-    "hal/in_process_bus.py",
-    "hal/python_can.py",
-    "hal/shared_bus.py",
-    "hal/socketcan_bus.py",
-}
+KINDS_OF_BUS = {"hal/bus.py", "hal/in_process_bus.py", "hal/python_can.py", "hal/shared_bus.py", "hal/socketcan_bus.py"}
 WAYS_OUT = {
     # Ends that reach beyond this process are opened by hal.bus alone; a simulation may build upon those within it.
     "SharedBus": {"hal/bus.py", "hal/python_can.py"},

@@ -11,10 +11,7 @@ from kurt2rt.cli.command_line import command_line
 from tests.lint.rules import LONGEST_SENTENCE, WORDS, Finding
 
 _PHRASE = re.compile(rf"\b(?:{'|'.join(WORDS['reader'])})\b", re.IGNORECASE)
-_LITERALS = {
-    ".js": re.compile(r'//.*|"((?:[^"\\\n]|\\.)*)"|`([^`]*)`'),
-    ".html": re.compile(r'>([^<>]+)<|="([^"]*)"'),
-}
+_LITERALS = {".js": re.compile(r'//.*|"((?:[^"\\\n]|\\.)*)"|`([^`]*)`'), ".html": re.compile(r'>([^<>]+)<|="([^"]*)"')}
 """Texts of the page in a file by its suffix; a comment is matched so that it hides its quotation marks."""
 
 

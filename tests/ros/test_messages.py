@@ -9,14 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kurt2rt.ros.messages import (
-    InvalidMessageError,
-    Message,
-    Twist,
-    Vector3,
-    decode,
-    encode,
-)
+from kurt2rt.ros.messages import InvalidMessageError, Message, Twist, Vector3, decode, encode
 from tests.ros import examples, foreign
 
 SHORT_NAMES = [message.__msgtype__.rpartition("/")[2] for message in examples.ALL]

@@ -73,11 +73,7 @@ class Rig:
         return [bytes(frame.data) for frame in self.ear.drain() if frame.arbitration_id == CONTROL_ID]
 
     async def serve(
-        self,
-        knowledge: Path,
-        watch: Callable[[TickRecord], Command | None],
-        *,
-        task: TaskSettings | None = None,
+        self, knowledge: Path, watch: Callable[[TickRecord], Command | None], *, task: TaskSettings | None = None
     ) -> ProgramStatus | None:
         """Run the service; `watch` sees each tick, may answer it and ends the run when it has seen enough."""
 

@@ -23,10 +23,7 @@ SAYS = {
         "disk does not answer; look at its health; closed with 0 lessons not written",
         timeout_message(ShutdownStage.LESSONS),
     ),
-    "recorder": (
-        "recording: the disk does not answer; the end is missing",
-        timeout_message(ShutdownStage.RECORDING),
-    ),
+    "recorder": ("recording: the disk does not answer; the end is missing", timeout_message(ShutdownStage.RECORDING)),
     "keys": (timeout_message(ShutdownStage.DISK),),
     "network": (timeout_message(ShutdownStage.CHANNEL),),
     "loop": (timeout_message(ShutdownStage.LOOP),),

@@ -44,9 +44,7 @@ class Shift:
             status=self.statuses.append, question=self.questions.append, acknowledged=self.settled.append
         )
         self.rounds = PostTick(
-            RobotService(self.desk.runtime, self.writer, SERVICE, self.stamps),
-            screen,
-            on_tick=self._watch,
+            RobotService(self.desk.runtime, self.writer, SERVICE, self.stamps), screen, on_tick=self._watch
         )
         self._tick = 10_000
 

@@ -104,10 +104,7 @@ class Rig:
         """Drive with set points that change by at most 3 cm/s per cycle."""
         for _ in range(round(seconds / 0.01)):
             left, right = self._speeds_cm_s
-            self._speeds_cm_s = (
-                left + max(-3, min(3, left_cm_s - left)),
-                right + max(-3, min(3, right_cm_s - right)),
-            )
+            self._speeds_cm_s = (left + max(-3, min(3, left_cm_s - left)), right + max(-3, min(3, right_cm_s - right)))
             self.step(SpeedControl(Mode.SPEED_CM, *self._speeds_cm_s))
 
     def listen(self) -> None:

@@ -173,11 +173,7 @@ def test_nothing_is_put_where_the_robot_is(yard: Yard, name: str, dx_m: float, d
     assert yard.rig.robot.world.settings == WORLD
 
 
-@pytest.mark.parametrize(
-    ("x_m", "y_m"),
-    [(1.0, 1.0), (0.1, 2.0), (50.0, 50.0)],
-    ids=["post", "outer wall", "far away"],
-)
+@pytest.mark.parametrize(("x_m", "y_m"), [(1.0, 1.0), (0.1, 2.0), (50.0, 50.0)], ids=["post", "outer wall", "far away"])
 def test_it_is_put_only_where_there_is_room(yard: Yard, x_m: float, y_m: float) -> None:
     with refused(WorldRefusal.NO_ROOM):
         yard.ground.put_robot(x_m, y_m, 0.0)

@@ -131,16 +131,7 @@ class Target:
     async def capture(self) -> list[bytes]:
         """Return the datagrams of a teacher who took the robot, taught, drove, stopped and resumed."""
         captured = []
-        kinds = (
-            HelloRequest,
-            Take,
-            Teach,
-            HoldAction,
-            Drive,
-            StopRequest,
-            Resume,
-            LessonsRequest,
-        )
+        kinds = (HelloRequest, Take, Teach, HoldAction, Drive, StopRequest, Resume, LessonsRequest)
         for kind in kinds:
             request = aiocoap.Message(code=aiocoap.POST, payload=encode_request(self.hostile.valid(kind.path)))
             request.opt.uri_path = tuple(kind.path.strip("/").split("/"))

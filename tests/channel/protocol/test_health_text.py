@@ -18,8 +18,7 @@ def test_trouble_in_appends_duration_and_remedy() -> None:
 
 
 @pytest.mark.parametrize(
-    ("seconds", "words"),
-    [(0.4, "0 s"), (59.4, "59 s"), (59.6, "1 min 0 s"), (3725, "1 h 2 min"), (90_000, "1 d 1 h")],
+    ("seconds", "words"), [(0.4, "0 s"), (59.4, "59 s"), (59.6, "1 min 0 s"), (3725, "1 h 2 min"), (90_000, "1 d 1 h")]
 )
 def test_lengths_of_time(seconds: float, words: str) -> None:
     assert lasting(seconds) == words

@@ -193,9 +193,7 @@ async def test_endpoint_flood_of_strangers_leaves_teacher_alone() -> None:
             pass
 
 
-async def test_endpoint_library_error_is_counted_and_next_is_read(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+async def test_endpoint_library_error_is_counted_and_next_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     def wrong(*_: object) -> None:
         raise AssertionError("backlogs relation violated")
 

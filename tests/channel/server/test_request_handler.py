@@ -53,10 +53,7 @@ from tests.channel.channel_fixture import BOOT, ChannelFixture, outcome_of, repl
 from tests.channel.grounds import Yard
 from tests.channel.hostile_datagrams import HostileDatagrams
 
-MOVING = {
-    *(RunBehaviour, Pursue, Resume, Take, Seek, StopSeeking, SetPhase),
-    *(PlaceRequest, BackToStartRequest),
-}
+MOVING = {*(RunBehaviour, Pursue, Resume, Take, Seek, StopSeeking, SetPhase), *(PlaceRequest, BackToStartRequest)}
 COMMANDS = {kind for kind in PATHS.values() if issubclass(kind, (*get_args(Single), CommandRequest))}
 LAST_START = b"last"
 
@@ -227,9 +224,7 @@ async def test_command_repeated_while_pending_counts_once(desk: ChannelFixture) 
     assert len(desk.notebook.events) == 1
 
 
-async def test_command_of_earlier_start_is_answered_as_repeated(
-    desk: ChannelFixture,
-) -> None:
+async def test_command_of_earlier_start_is_answered_as_repeated(desk: ChannelFixture) -> None:
     request = desk.command(Teach, "forward", None, boot=LAST_START)
     desk.runtime.handler.updater.handled_ids.add(f"ann-{request.command_id.hex()}")
     reply = await desk.ask(request)
@@ -404,10 +399,7 @@ async def test_speed_scales_leases_in_robot_time() -> None:
 
 @pytest.mark.parametrize(
     ("reached", "stop", "times"),
-    [
-        (2.5, ActiveStop(StopReason.FALLS_BEHIND, "4"), 1),
-        (4.0, ActiveStop(StopReason.LINK_LOST, "ann"), 4),
-    ],
+    [(2.5, ActiveStop(StopReason.FALLS_BEHIND, "4"), 1), (4.0, ActiveStop(StopReason.LINK_LOST, "ann"), 4)],
 )
 async def test_computer_too_slow_for_the_speed_is_no_lost_link(
     monkeypatch: pytest.MonkeyPatch, reached: float, stop: ActiveStop, times: int

@@ -34,10 +34,7 @@ async def listened(tmp_path: Path, wiring: Wiring) -> Session:
     [
         ("INFO_1", StepFault(FaultCode.IDENTITY_MISSING)),
         ("ENCODER", StepFault.of(FaultCode.FRAME_MISSING, frame="ENCODER (0x09)")),
-        (
-            "BDC04_07",
-            StepFault.of(FaultCode.FRAME_MISSING_SECOND, frame="BDC04_07 (0x16) with s9, s10, s12, s13"),
-        ),
+        ("BDC04_07", StepFault.of(FaultCode.FRAME_MISSING_SECOND, frame="BDC04_07 (0x16) with s9, s10, s12, s13")),
     ],
 )
 async def test_a_frame_that_never_comes_is_named(tmp_path: Path, name: str, fault: StepFault) -> None:

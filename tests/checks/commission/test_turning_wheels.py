@@ -142,10 +142,7 @@ async def test_modes_step_foreign_control_ends_the_drive(tmp_path: Path) -> None
         ),
         pytest.param(
             Wiring(reversed_motors=[0], reversed_encoders=[0]),
-            [
-                StepFault.of(FaultCode.MOTOR_REVERSED, side="left"),
-                LEFT_ENCODER_REVERSED,
-            ],
+            [StepFault.of(FaultCode.MOTOR_REVERSED, side="left"), LEFT_ENCODER_REVERSED],
             id="left reversed twice",
             marks=pytest.mark.deep,
         ),
@@ -155,9 +152,7 @@ async def test_modes_step_foreign_control_ends_the_drive(tmp_path: Path) -> None
             id="exchanged and reversed",
         ),
         pytest.param(
-            Wiring(dead_encoders=[0]),
-            [StepFault.of(FaultCode.ENCODER_DEAD, side="left")],
-            id="left encoder dead",
+            Wiring(dead_encoders=[0]), [StepFault.of(FaultCode.ENCODER_DEAD, side="left")], id="left encoder dead"
         ),
     ],
 )
@@ -279,9 +274,7 @@ async def test_modes_step_failed_brake_asks_to_switch_the_motors_off(tmp_path: P
     assert session.outcome("modes") is StepOutcome.FAILED
 
 
-async def test_stop_step_guard_brake_is_not_taken_for_the_watchdog(
-    tmp_path: Path,
-) -> None:
+async def test_stop_step_guard_brake_is_not_taken_for_the_watchdog(tmp_path: Path) -> None:
     never = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"controller_watchdog_s": 9.0})})
     with Workshop(never) as workshop:
         session = Session(workshop, tmp_path)

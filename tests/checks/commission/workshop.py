@@ -40,11 +40,7 @@ class Workshop:
     """Robot, room, hand and wheels as they really are. `true`: what the robot is; the checklist is given BASE."""
 
     def __init__(
-        self,
-        true: Kurt2Settings = BASE,
-        wiring: Wiring | None = None,
-        hand_radius_m: float = 0.05,
-        spec: str = "",
+        self, true: Kurt2Settings = BASE, wiring: Wiring | None = None, hand_radius_m: float = 0.05, spec: str = ""
     ) -> None:
         self.true = true
         self.wiring = wiring or Wiring()

@@ -162,11 +162,7 @@ class LateClock:
 @pytest.mark.parametrize("late_s", [(0.002, 0.002, 0.002), (0.0001, 0.0001, 0.011)], ids=["always", "once a period"])
 def test_timer_often_late_or_by_a_period_warns(late_s: tuple[float, ...]) -> None:
     finding = check_timer(3, 0.01, lambda: nullcontext(LateClock(*late_s)))
-    assert (finding.code, finding.status, finding.forbids_run) == (
-        FindingCode.TIMER_LATE,
-        CheckStatus.WARNING,
-        False,
-    )
+    assert (finding.code, finding.status, finding.forbids_run) == (FindingCode.TIMER_LATE, CheckStatus.WARNING, False)
 
 
 def test_without_a_timer_the_robot_cannot_run() -> None:

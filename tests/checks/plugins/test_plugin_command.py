@@ -55,10 +55,7 @@ def test_skeleton_installs_and_passes_its_tests(kurt2rt: CommandLine, plugin_fol
     ],
 )
 def test_new_refuses_a_name_that_is_taken(
-    kurt2rt: CommandLine,
-    plugin_folder: Path,
-    words: tuple[str, ...],
-    told: str,
+    kurt2rt: CommandLine, plugin_folder: Path, words: tuple[str, ...], told: str
 ) -> None:
     (plugin_folder / "there").mkdir()
     assert told in kurt2rt.refused("plugin", "new", *words)

@@ -107,10 +107,7 @@ class SendsNoBrake(Wrapped):
 class FeelsTheOtherEnd(Wrapped):
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
         result = super().drive(wanted, decided_at_s, now_s)
-        other = {
-            GuardReason.FRONT_BUMPER: GuardReason.REAR_BUMPER,
-            GuardReason.REAR_BUMPER: GuardReason.FRONT_BUMPER,
-        }
+        other = {GuardReason.FRONT_BUMPER: GuardReason.REAR_BUMPER, GuardReason.REAR_BUMPER: GuardReason.FRONT_BUMPER}
         return result._replace(reasons=tuple(other.get(each, each) for each in result.reasons))
 
 

@@ -81,16 +81,8 @@ def test_rlas_of_inactive_behaviours_never_answer() -> None:
 @pytest.mark.parametrize(
     ("events", "behaviours", "problem"),
     [
-        (
-            (A_AT_0,),
-            TURNS,
-            "RLA 1 .* straight_on, turn_left;",
-        ),
-        (
-            (STRAIGHT_AT_0, LEFT_AT_1),
-            ("straight_on",),
-            "RLA 2 .* turn_left, .* straight_on;",
-        ),
+        ((A_AT_0,), TURNS, "RLA 1 .* straight_on, turn_left;"),
+        ((STRAIGHT_AT_0, LEFT_AT_1), ("straight_on",), "RLA 2 .* turn_left, .* straight_on;"),
         ((LEFT_AT_1,), ("",), "RLA 2 .* turn_left, .* without a name;"),
     ],
 )

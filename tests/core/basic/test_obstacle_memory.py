@@ -98,12 +98,7 @@ def test_far_readings_and_unknown_actions_meet_nothing() -> None:
 class Doubter:
     """A basic level over two readings that remembers obstacles, and one tick in a call."""
 
-    def __init__(
-        self,
-        *events: TeachingEvent,
-        contact: ContactSettings = SETTINGS,
-        asks: bool = False,
-    ) -> None:
+    def __init__(self, *events: TeachingEvent, contact: ContactSettings = SETTINGS, asks: bool = False) -> None:
         system = RlaSystem(2, 1000.0)
         system.apply_all(events)
         settings = DoubtSettings(
@@ -128,11 +123,7 @@ class Doubter:
         return [self.at(readings(s11=0.10), side) for _ in range(LOOK_TICKS)][-1]
 
 
-LESSONS = (
-    created(1, (100.0, 70.0), "forward"),
-    created(2, (400.0, 70.0), "spin"),
-    created(3, (500.0, 70.0), "back"),
-)
+LESSONS = (created(1, (100.0, 70.0), "forward"), created(2, (400.0, 70.0), "spin"), created(3, (500.0, 70.0), "back"))
 
 
 def test_restarted_level_remembers_no_obstacle() -> None:

@@ -49,10 +49,7 @@ def test_a_taught_action_may_be_made_of_taught_ones(folder: Path) -> None:
         (("taught.knowledge", "repertoire.yaml"), r"follow_wall\): .*repertoire\.yaml: "),
         (("task: wall_following", "task: fleeing"), r"'wall_following', .*'fleeing'"),
         (("task: wall_following", "task: flying"), r"flying: .*\bwall_following\b"),
-        (
-            ("name: follow_wall", "name: f, behaviour: turn"),
-            "'turn'; .* without a name",
-        ),
+        (("name: follow_wall", "name: f, behaviour: turn"), "'turn'; .* without a name"),
         (("task: wall_following", "task: streets"), "''; .*: straight_on, turn_left, "),
     ],
 )

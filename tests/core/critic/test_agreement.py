@@ -2,12 +2,7 @@
 
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.settings import AgreementSettings
-from kurt2rt.core.rla.events import (
-    Appraised,
-    LessonRedone,
-    LessonUndone,
-    TeachingEvent,
-)
+from kurt2rt.core.rla.events import Appraised, LessonRedone, LessonUndone, TeachingEvent
 from tests.core.critic.helpers import SETTINGS, appraisal, origin
 
 PERIOD_S = 0.01

@@ -10,14 +10,7 @@ from config.settings import SettingsError
 from hal.robot import SensorReadings
 from hal.robot_settings import load_robot
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
-from kurt2rt.core.critic.settings import (
-    CIRCLING,
-    GRAZING,
-    NAMES,
-    CriticSettings,
-    critic_of,
-    load_critic,
-)
+from kurt2rt.core.critic.settings import CIRCLING, GRAZING, NAMES, CriticSettings, critic_of, load_critic
 
 CONTENT: dict[str, Any] = load_critic().model_dump(mode="json")
 

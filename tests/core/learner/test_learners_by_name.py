@@ -20,10 +20,7 @@ def test_find_learner_by_entry_point(plugin_folder: Path) -> None:
     ("name", "text"),
     [
         ("k-n", "there is no such learner; give module:Name, or one of: rla-door, 1-nn"),
-        (
-            "no_such_module:Mine",
-            "there is no module 'no_such_module' on Python's path or in ",
-        ),
+        ("no_such_module:Mine", "there is no module 'no_such_module' on Python's path or in "),
         ("kurt2rt.core.learner.rla_learner:Rlalearner", "rla_learner.py has no 'Rlalearner'"),
         ("kurt2rt.core.learner.rla_learner:", "there is no such learner"),
         ("kurt2rt.core.learner.learner:Why", "is the class Why, allowed is a class with the methods decide, lesson, "),

@@ -39,10 +39,7 @@ def test_detector_look_in_and_back_is_no_junction() -> None:
 
 @pytest.mark.parametrize(
     ("changes", "told"),
-    [
-        ({"left": ["s1", "s99"]}, "junctions: .* s99;"),
-        ({"right": ["s6", "s5"]}, "junctions: s6 .*s5;"),
-    ],
+    [({"left": ["s1", "s99"]}, "junctions: .* s99;"), ({"right": ["s6", "s5"]}, "junctions: s6 .*s5;")],
 )
 def test_detector_unknown_sensors_are_refused(changes: dict[str, object], told: str) -> None:
     content = json.dumps(SETTINGS.model_dump(mode="json") | changes)

@@ -8,10 +8,7 @@ from kurt2rt.core.perception.definition import SituationDefinition
 
 SENSORS = ("a", "b", "c", "d")
 
-READINGS: tuple[Mapping[str, object], ...] = (
-    {"kind": "reading", "sensor": "b"},
-    {"kind": "reading", "sensor": "a"},
-)
+READINGS: tuple[Mapping[str, object], ...] = ({"kind": "reading", "sensor": "b"}, {"kind": "reading", "sensor": "a"})
 EXTREMES: tuple[Mapping[str, object], ...] = (
     {"kind": "maximum", "heading": "front", "sensors": ["a", "c"]},
     {"kind": "minimum", "heading": "front", "sensors": ["d", "b", "c"]},
@@ -29,10 +26,7 @@ ALL_KINDS = (*READINGS, *EXTREMES, *ORIENTATIONS, *WHEELS)
 
 
 def definition(
-    features: Sequence[Mapping[str, object]] = ALL_KINDS,
-    *,
-    history_steps: int = 4,
-    scale: int = 100,
+    features: Sequence[Mapping[str, object]] = ALL_KINDS, *, history_steps: int = 4, scale: int = 100
 ) -> SituationDefinition:
     content = {
         "name": "small",

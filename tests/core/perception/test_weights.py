@@ -21,16 +21,10 @@ NAMES = DEFINITION.names
 @pytest.mark.parametrize(
     ("changed", "told"),
     [
-        (
-            [(("s19",), 2.0)],
-            "task mine: learning.weights.0.features: .*'s19'; .*: s1, s2, ",
-        ),
+        ([(("s19",), 2.0)], "task mine: learning.weights.0.features: .*'s19'; .*: s1, s2, "),
         ([(("s1 (10 s average)",), 2.0)], r"'s1 \(10 s average\)'"),
         ([(("s1", "s2"), 2.0), (("s2",), 3.0)], "task mine: learning.weights.1.features: 's2' "),
-        (
-            [(tuple(each.name for each in DEFINITION.features), 0.0)],
-            "task mine: learning.weights: .*0;",
-        ),
+        ([(tuple(each.name for each in DEFINITION.features), 0.0)], "task mine: learning.weights: .*0;"),
     ],
 )
 def test_feature_weights_unknown_or_double_is_refused(changed: list[tuple[tuple[str, ...], float]], told: str) -> None:

@@ -2,13 +2,7 @@
 
 from kurt2rt.core.rla.events import LessonUndone, RlaCreated, TeachingEvent
 from kurt2rt.core.rla.rla import CRITIC, Phase
-from tests.core.reinforcement.helpers import (
-    CALM,
-    CRASHED,
-    SIGNALS_ONLY,
-    Track,
-    knows_good_from_bad,
-)
+from tests.core.reinforcement.helpers import CALM, CRASHED, SIGNALS_ONLY, Track, knows_good_from_bad
 from tests.core.rla.helpers import created
 from tests.teacher.helpers import teach
 

@@ -29,15 +29,7 @@ def test_packed_credits_equal_their_tuple(a: tuple[Credit, ...], b: tuple[Credit
     assert pickle.loads(pickle.dumps(credits_)) == credits_
 
 
-@pytest.mark.parametrize(
-    "credit",
-    [
-        Credit(0, 1.0),
-        Credit(2**32, 1.0),
-        Credit(True, 1.0),
-        Credit(1, 1),
-    ],
-)
+@pytest.mark.parametrize("credit", [Credit(0, 1.0), Credit(2**32, 1.0), Credit(True, 1.0), Credit(1, 1)])
 def test_pack_credits_unfit_items_are_unchanged(credit: Credit) -> None:
     credits_ = (Credit(1, 1.0), credit)
     assert pack_credits(credits_) is credits_

@@ -5,13 +5,7 @@ import pytest
 
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.statistics import Expectation, Statistics, pack
-from kurt2rt.core.teaching.commands import (
-    BeAt,
-    NameSituation,
-    Resume,
-    Stop,
-    Teach,
-)
+from kurt2rt.core.teaching.commands import BeAt, NameSituation, Resume, Stop, Teach
 from tests.core.rla.helpers import created
 from tests.core.test_tick_learning import Drive
 from tests.core.test_tick_with_mid_level import LENGTH, STREETS, Town, the_way

@@ -148,8 +148,7 @@ def test_condition_index_5000_clusters_equal_brute_force(spread: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("condition", "problem"),
-    [((1.0,), r"\b1 .*\b2\b"), ((1.0, math.nan), "finite"), ((math.inf, 0.0), "finite")],
+    ("condition", "problem"), [((1.0,), r"\b1 .*\b2\b"), ((1.0, math.nan), "finite"), ((math.inf, 0.0), "finite")]
 )
 def test_condition_index_unfit_condition_is_refused(condition: Point, problem: str) -> None:
     index = index_of([(1.0, 2.0)])

@@ -85,9 +85,7 @@ def test_redo_standing_or_unknown_lesson_is_refused() -> None:
 
 @examples(100)
 @given(st.lists(st.tuples(st.integers(0, 5), st.integers(0, 30)), max_size=40))
-def test_redo_random_sequences_equal_standing_lessons(
-    steps: list[tuple[int, int]],
-) -> None:
+def test_redo_random_sequences_equal_standing_lessons(steps: list[tuple[int, int]]) -> None:
     system = RlaSystem(2, 5.0)
     for number, (what, which) in enumerate(steps):
         living = [rla.rla_id for rla in system.rlas]

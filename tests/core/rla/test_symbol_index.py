@@ -16,11 +16,7 @@ from tests.core.rla.helpers import created
 Symbols = tuple[float, ...]
 
 HISTORIES = st.integers(1, 13).flatmap(
-    lambda length: st.lists(
-        st.tuples(*[st.integers(0, 4).map(float)] * length),
-        min_size=1,
-        max_size=12,
-    )
+    lambda length: st.lists(st.tuples(*[st.integers(0, 4).map(float)] * length), min_size=1, max_size=12)
 )
 
 

@@ -8,14 +8,7 @@ import pytest
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.events import (
-    ActionReplaced,
-    LessonUndone,
-    RlaCreated,
-    SessionBegun,
-    SessionEnded,
-    TeachingEvent,
-)
+from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated, SessionBegun, SessionEnded, TeachingEvent
 from kurt2rt.core.rla.rla import BASIC, Origin, Phase, Rla
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
@@ -108,8 +101,7 @@ def test_a_correction_beyond_the_border_inserts_a_new_rla() -> None:
 
 
 @pytest.mark.parametrize(
-    "command",
-    [teach("fly"), correct("fly"), replace_action(1, "fly"), RunBehaviour("1", "Ann", "fly", 9)],
+    "command", [teach("fly"), correct("fly"), replace_action(1, "fly"), RunBehaviour("1", "Ann", "fly", 9)]
 )
 def test_unknown_action_is_refused_with_the_known_ones(command: Command) -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
@@ -320,9 +312,7 @@ def test_a_release_that_comes_late_ends_its_own_press_only() -> None:
         lambda tick: Pursue("2", "Ann", "", tick),
     ],
 )
-def test_command_from_before_a_stop_does_not_move_the_robot(
-    late: Callable[[int], Command],
-) -> None:
+def test_command_from_before_a_stop_does_not_move_the_robot(late: Callable[[int], Command]) -> None:
     lesson = Lesson()
     lesson.say(stop("1"))
     refused = lesson.say(late(lesson.tick - 1))

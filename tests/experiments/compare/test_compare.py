@@ -12,16 +12,7 @@ from kurt2rt.core.learner.learner import Why
 from kurt2rt.core.learner.learners import NoLearnerError
 from kurt2rt.core.learner.rla_learner import RlaLearner
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
-from kurt2rt.experiments.compare import (
-    SHIPPED,
-    Compared,
-    Pupil,
-    PupilJob,
-    PupilOutcome,
-    Row,
-    make_plan,
-    read_rows,
-)
+from kurt2rt.experiments.compare import SHIPPED, Compared, Pupil, PupilJob, PupilOutcome, Row, make_plan, read_rows
 from kurt2rt.experiments.lockstep.engine import ON_BUS, Engine, Engines
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from tests.experiments.helpers import short_task

@@ -1,12 +1,6 @@
 """Workload of a teacher, minute by minute."""
 
-from kurt2rt.core.teaching.commands import (
-    Correct,
-    HoldAction,
-    Resume,
-    Stop,
-    Undo,
-)
+from kurt2rt.core.teaching.commands import Correct, HoldAction, Resume, Stop, Undo
 from kurt2rt.experiments.lockstep.teacher_workload import TeacherWorkload, WorkloadMinute
 
 

@@ -21,10 +21,7 @@ from tests.experiments.study.here import parts_in
 
 
 def planned(
-    *tasks: str,
-    extent: Extent = WHOLE,
-    seeds: tuple[int, ...] = (100, 101, 102),
-    paper: PaperSettings | None = None,
+    *tasks: str, extent: Extent = WHOLE, seeds: tuple[int, ...] = (100, 101, 102), paper: PaperSettings | None = None
 ) -> StudyPlan[PaperExtent]:
     return make_plan(paper or load_paper(), extent, seeds, ["shipped"], parts_in(), tasks=tasks)
 

@@ -11,9 +11,7 @@ from tests.hil.simulated_time.stage import Story
 pytestmark = pytest.mark.boots
 
 
-def test_repeated_half_minute_drive_is_bit_identical(
-    play: Callable[[Story], Played],
-) -> None:
+def test_repeated_half_minute_drive_is_bit_identical(play: Callable[[Story], Played]) -> None:
     story = Story(30.0, by_command=True)
     first, second = play(story), play(story)
 

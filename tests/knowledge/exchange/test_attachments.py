@@ -4,10 +4,7 @@ import pytest
 
 from config.settings_files import kept_name
 from kurt2rt.core.rla.statistics import Expectation, Statistics
-from kurt2rt.knowledge.exchange.attachments import (
-    decode_statistics,
-    encode_statistics,
-)
+from kurt2rt.knowledge.exchange.attachments import decode_statistics, encode_statistics
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_head import RunHead, decode_head, encode_head
 

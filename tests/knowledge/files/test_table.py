@@ -11,16 +11,7 @@ from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.knowledge.files.table import export_table
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.journal import Journal
-from tests.knowledge.lessons import (
-    BINDING,
-    STAMP,
-    WITH_CRITIC,
-    append,
-    appraisal,
-    created,
-    entry,
-    withdrawn,
-)
+from tests.knowledge.lessons import BINDING, STAMP, WITH_CRITIC, append, appraisal, created, entry, withdrawn
 
 
 def exported(path: Path, folder: Path) -> list[list[str]]:

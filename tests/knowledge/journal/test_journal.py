@@ -14,16 +14,7 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.cli.helpers import ROOT, started
-from tests.knowledge.lessons import (
-    BINDING,
-    STAMP,
-    begun,
-    created,
-    deleted,
-    entry,
-    replaced,
-    tamper,
-)
+from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, entry, replaced, tamper
 from tests.knowledge.refusals import refused
 
 

@@ -168,10 +168,7 @@ class Told:
     stopped: ActiveStop | None = None
 
 
-STORIES = {
-    "walls": Told("wall_following", 44, attended=True, stopped=STARTED),
-    "errand": Told("errands", 44),
-}
+STORIES = {"walls": Told("wall_following", 44, attended=True, stopped=STARTED), "errand": Told("errands", 44)}
 
 
 def record_story(

@@ -58,9 +58,7 @@ def test_counterfactual_of_later_knowledge_asks_less(lessons: dict[str, list[Tea
     assert counterfactual(run, CounterfactualPolicy(run, lessons["errand"])).would_drive > 100
 
 
-def test_counterfactual_stretches_name_the_corrected_rla(
-    lessons: dict[str, list[TeachingEvent]],
-) -> None:
+def test_counterfactual_stretches_name_the_corrected_rla(lessons: dict[str, list[TeachingEvent]]) -> None:
     run = stored("walls", 12)
     known = lessons["walls"]
     used = CounterfactualPolicy(run, known)

@@ -15,12 +15,7 @@ import pytest
 from kurt2rt.channel.protocol.health import HEALTH, HealthReport
 from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.health.status_error import StatusCode, StatusError
-from kurt2rt.service.health.status_socket import (
-    StatusSocket,
-    read_reports,
-    short_name,
-    status_socket_path,
-)
+from kurt2rt.service.health.status_socket import StatusSocket, read_reports, short_name, status_socket_path
 from tests.patience import PATIENCE_S
 from tests.service.health.reports import ILL, WELL
 

@@ -16,12 +16,7 @@ def test_a_life_as_the_manager_hears_it(tmp_path: Path) -> None:
         notifier.status("waits for the bus")
         notifier.ping()
         notifier.stopping()
-        assert systemd.heard() == [
-            "READY=1",
-            "STATUS=waits for the bus",
-            "WATCHDOG=1",
-            "STOPPING=1",
-        ]
+        assert systemd.heard() == ["READY=1", "STATUS=waits for the bus", "WATCHDOG=1", "STOPPING=1"]
 
 
 def test_a_socket_without_a_file_is_found() -> None:

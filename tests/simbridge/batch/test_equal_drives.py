@@ -14,10 +14,7 @@ from tests.experiments.helpers import short_task, teach
 from tests.simbridge.batch.both_ways import drive_in_batch, drive_on_bus, first_difference
 
 SECONDS = 4.0 if IS_COMPILED else 0.5
-DRIVES = [
-    ("wall_following", "rooms-1000"),
-    ("eight", "two_objects"),
-]
+DRIVES = [("wall_following", "rooms-1000"), ("eight", "two_objects")]
 
 
 @pytest.mark.parametrize(("name", "world"), DRIVES)

@@ -45,11 +45,7 @@ def test_control_invalid_frames_are_only_counted(rig: Rig) -> None:
 
 @pytest.mark.parametrize(
     "jump",
-    [
-        SpeedControl(Mode.SPEED_CM, 60, 60),
-        SpeedControl(Mode.SPEED_CM, 0, 60),
-        RawControl(RawSide(1000), RawSide(1000)),
-    ],
+    [SpeedControl(Mode.SPEED_CM, 60, 60), SpeedControl(Mode.SPEED_CM, 0, 60), RawControl(RawSide(1000), RawSide(1000))],
 )
 def test_control_jump_crashes_the_controller_until_reset(jump: SpeedControl | RawControl, rig: Rig) -> None:
     rig.run(0.1, STAND)

@@ -135,10 +135,7 @@ async def be_in_charge(client: TeacherClient, robot: StandInRobot) -> None:
 async def test_doubled_and_overtaken_pictures_never_go_back_in_time(pairing: Pairing, robot: StandInRobot) -> None:
     bad = Weather(doubled=0.5, overtaken=0.5, overtaken_s=0.12)
     ticks = []
-    async with (
-        LossyLink(robot.port, down=bad) as link,
-        TeacherClient(pairing.device.folder, port=link.port) as client,
-    ):
+    async with LossyLink(robot.port, down=bad) as link, TeacherClient(pairing.device.folder, port=link.port) as client:
         async for state in client.states():
             ticks.append(state.tick)
             if len(ticks) == 12:
@@ -183,10 +180,7 @@ async def test_correct_earlier_beyond_what_is_kept_raises(client: TeacherClient,
 async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: StandInRobot) -> None:
     async def tells(request: object) -> Reply:
         if isinstance(request, LessonsRequest):
-            return Reply(
-                ReplyStatus.DONE,
-                {"lessons": [["phone-01", "RLA 7: forward", "phone", 1, 42, "", False]]},
-            )
+            return Reply(ReplyStatus.DONE, {"lessons": [["phone-01", "RLA 7: forward", "phone", 1, 42, "", False]]})
         corners = [[0.0, 0.0], [1.0, 0.0]]
         world = {"version": 3, "name": "A", "size": [3, 4], "outline": corners, "walls": [["north", corners]]}
         return Reply(ReplyStatus.DONE, {**world, "round": [["pillar", 1.0, 2.0, 0.1]]})
@@ -485,9 +479,7 @@ async def test_driving_block_after_stop_leaves_next_press_alone(client: TeacherC
     await client.let_go()
 
 
-async def test_press_id_grows_across_restarts_and_renewals(
-    pairing: Pairing,
-) -> None:
+async def test_press_id_grows_across_restarts_and_renewals(pairing: Pairing) -> None:
     teachers, devices = pairing.teacher.parent, pairing.device.folder.parent
     heard: list[Drive] = []
     for new_keys in (False, False, True):
@@ -634,10 +626,7 @@ async def test_client_after_robot_restart_proves_itself_and_goes_on(pairing: Pai
 
 async def test_robot_without_pairing_is_told_from_silence(tmp_path: Path) -> None:
     stranger = pair(tmp_path / "others", tmp_path / "strangers", "phone")
-    async with (
-        forger(unauthorised) as port,
-        TeacherClient(stranger.device.folder, port=port, patience_s=0.1) as client,
-    ):
+    async with forger(unauthorised) as port, TeacherClient(stranger.device.folder, port=port, patience_s=0.1) as client:
         await eventually(lambda: client.trouble != "")
         with pytest.raises(NoAnswerError, match="kurt2rt pair"):
             await client.stop()

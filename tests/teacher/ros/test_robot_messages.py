@@ -11,11 +11,7 @@ from kurt2rt.channel.server.channel import describe_robot
 from kurt2rt.core.decision.decision import StandReason
 from kurt2rt.core.decision.standing import Standing
 from kurt2rt.ros import messages as ros
-from kurt2rt.teacher.ros.robot_messages import (
-    Odometer,
-    ScanBuilder,
-    robot_status,
-)
+from kurt2rt.teacher.ros.robot_messages import Odometer, ScanBuilder, robot_status
 from tests.channel.channel_fixture import BOOT, ChannelFixture
 from tests.channel.states import state
 from tests.ros import foreign

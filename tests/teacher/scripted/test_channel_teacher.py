@@ -15,16 +15,7 @@ from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.rla import AUTO, Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import QUICK_TEACHER
-from kurt2rt.core.teaching.commands import (
-    BeginSession,
-    Correct,
-    EndSession,
-    HoldAction,
-    Pursue,
-    Resume,
-    SetPhase,
-    Take,
-)
+from kurt2rt.core.teaching.commands import BeginSession, Correct, EndSession, HoldAction, Pursue, Resume, SetPhase, Take
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import RefusedError
 from kurt2rt.teacher.scripted.channel_teacher import teach_by_script

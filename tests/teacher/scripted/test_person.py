@@ -114,10 +114,7 @@ def test_update_limit_of_presses_holds_in_every_minute() -> None:
 
 def wrong_fraction(seed: int) -> float:
     teacher = person(
-        Phase.SUPERVISED,
-        seed=seed,
-        question_delay=always(0.0),
-        errors=ErrorSettings(answers=0.05, corrections=0.0),
+        Phase.SUPERVISED, seed=seed, question_delay=always(0.0), errors=ErrorSettings(answers=0.05, corrections=0.0)
     )
     answers = list(given(teacher, [asking()] * 40_000).values())
     assert len(answers) > 1000

@@ -45,11 +45,7 @@ from kurt2rt.runs.explain.reasons import format_decision
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import NoAnswer, NoAnswerError
 from kurt2rt.teacher.terminal.terminal import TerminalTeacher
-from kurt2rt.teacher.terminal.terminal_text import (
-    format_critic_change,
-    format_misunderstood,
-    format_opinion,
-)
+from kurt2rt.teacher.terminal.terminal_text import format_critic_change, format_misunderstood, format_opinion
 from tests.channel.states import COMMANDS, SURPRISED, state
 from tests.runs.explain.helpers import facts, level, story
 from tests.service.health.reports import ILL
@@ -225,10 +221,7 @@ async def test_reward_has_the_tick_of_its_typing(console: Console, robot: StandI
     await looked_at(console, robot, nearest=None)
     mind.may_answer.set()
     (correction,) = await robot.hears(Correct)
-    assert [(each.value, each.decision_tick) for each in robot.all_of(Reward)] == [
-        (1, ticks[1]),
-        (-1, ticks[2]),
-    ]
+    assert [(each.value, each.decision_tick) for each in robot.all_of(Reward)] == [(1, ticks[1]), (-1, ticks[2])]
     assert [(each.action, each.decision_tick) for each in robot.all_of(Teach)] == [("forward", ticks[3])]
     assert (correction.action, correction.decision_tick) == ("spin_left", ticks[4])
 
