@@ -11,7 +11,7 @@ from typing import Any, cast
 import anyio
 import pytest
 
-from kurt2rt.channel.protocol.hello import HELLO
+from kurt2rt.channel.protocol.hello import HELLO, AppraisalName, MidIntroduction
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.limits import VERSION
 from kurt2rt.channel.protocol.requests import (
@@ -55,7 +55,10 @@ def open_exchanges(client: TeacherClient) -> int:
     return len(client._open.requests._coap.request_interfaces[0].outgoing_requests)
 
 
-INTRODUCED = Reply(ReplyStatus.DONE, HELLO.plain_of(A_HELLO))
+CRITICS = tuple(AppraisalName(name, value) for name, value in (("bad", -1), ("neutral", 0), ("good", 1)))
+MIDS: dict[str, Any] = {"behaviours": ("straight_on", "turn_left"), "mid": MidIntroduction("history", 12, 6.0)}
+A_PUPIL = replace(A_HELLO, appraisals=CRITICS, trusted_from=0.8, seeks=True, **MIDS)
+INTRODUCED = Reply(ReplyStatus.DONE, HELLO.plain_of(A_PUPIL))
 HELD = Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
 
 

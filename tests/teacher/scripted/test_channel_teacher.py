@@ -21,7 +21,7 @@ from kurt2rt.teacher.client.answer import RefusedError
 from kurt2rt.teacher.scripted.channel_teacher import teach_by_script
 from simbridge.contracts.simulation import SimulatedPlace
 from tests.patience import PATIENCE_S
-from tests.teacher.client.test_client import HELLO
+from tests.teacher.client.test_client import INTRODUCED
 from tests.teacher.stand_in_robot import Message, StandInRobot, in_a_task_of_its_own, stand_in_robot
 
 SETTINGS = load_robot("kurt2")
@@ -53,7 +53,9 @@ class Mind:
 
     async def __call__(self, request: Message) -> Reply:
         if isinstance(request, HelloRequest):
-            return Reply(ReplyStatus.DONE, {**HELLO, "behaviours": [""], "simulated": self._simulated, **self.hello})
+            return Reply(
+                ReplyStatus.DONE, {**INTRODUCED.body, "behaviours": [""], "simulated": self._simulated, **self.hello}
+            )
         if not isinstance(request, _CarriedOut):
             return done(self._robot.state.tick)
         reply = done(self._robot.state.tick)

@@ -49,7 +49,7 @@ from kurt2rt.teacher.terminal.terminal_text import format_critic_change, format_
 from tests.channel.states import COMMANDS, SURPRISED, state
 from tests.runs.explain.helpers import facts, level, story
 from tests.service.health.reports import ILL
-from tests.teacher.client.test_client import HELLO, LONGEST_S, Clock, be_patient, seen
+from tests.teacher.client.test_client import INTRODUCED, LONGEST_S, Clock, be_patient, seen
 from tests.teacher.page.fake_robot import A_HELLO
 from tests.teacher.stand_in_robot import Message, StandInRobot, in_a_task_of_its_own, stand_in_robot
 
@@ -95,7 +95,7 @@ class RobotStub:
         if isinstance(request, self.slow):
             await self.may_answer.wait()
         if isinstance(request, HelloRequest):
-            return Reply(ReplyStatus.DONE, HELLO)
+            return INTRODUCED
         if isinstance(request, LessonsRequest):
             return Reply(ReplyStatus.DONE, {"lessons": []})
         if isinstance(request, WhyRequest):
