@@ -6,14 +6,12 @@ from contextlib import asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
 
-import anyio
 import pytest
 
 from hal.kurt2_settings import load_kurt2
 from hal.robot import STANDSTILL
 from kurt2rt.channel.protocol.requests import NextRunRequest, SpeedRequest
 from kurt2rt.channel.protocol.simulation import EXAM, NO_EXAM, ExamStatus
-from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.decision.standing import NEXT_RUN
 from kurt2rt.core.outcome import CommandRefusedError, Field, Outcome, RefusalCode, ResultCode
@@ -35,7 +33,7 @@ from tests.cli.helpers import Running, running
 from tests.knowledge.lessons import created
 from tests.knowledge.reading import events_in
 from tests.knowledge.refusals import refused
-from tests.patience import PATIENCE_S
+from tests.teacher.states_of import state_where
 
 ROBOT, TASK = load_kurt2(), load_task("wall_following")
 TEACHER = TeacherNow("phone", 2, "noon")
@@ -184,24 +182,6 @@ async def teacher_of(robot: Running, folder: Path) -> AsyncIterator[TeacherClien
         yield client
 
 
-async def state_where(client: TeacherClient, boot: bytes, **wanted: object) -> State:
-    """Return the first state with these values, of another start of the robot than `boot`."""
-    with anyio.fail_after(PATIENCE_S):
-        async for state in client.states():
-            if state.boot != boot and all(getattr(state, name) == value for name, value in wanted.items()):
-                return state
-    raise AssertionError("the client ended")
-
-
-async def state_at(client: TeacherClient, tick: int) -> State:
-    """Return the first state of a tick or later."""
-    with anyio.fail_after(PATIENCE_S):
-        async for state in client.states():
-            if state.tick >= tick:
-                return state
-    raise AssertionError("the client ended")
-
-
 async def test_next_run_keeps_teacher_lessons_and_verdict(tmp_path: Path) -> None:
     knowledge = tmp_path / "var" / "wall_following.knowledge"
     knowledge.parent.mkdir()
@@ -209,19 +189,19 @@ async def test_next_run_keeps_teacher_lessons_and_verdict(tmp_path: Path) -> Non
     passed = ExamStatus(False, 1.0, "Passed in 3 of 3 worlds.")
     with running("run", "--port", "0", folder=tmp_path) as robot:
         async with teacher_of(robot, tmp_path) as client:
-            asks = await state_where(client, b"", cause="unknown", teacher="local")
+            asks = await state_where(client, cause="unknown", teacher="local")
             assert (await client.send(Teach, action="forward", decision_tick=asks.tick)).accepted
-            first = await state_where(client, b"", lessons=1, unsaved=0)
+            first = await state_where(client, lessons=1, unsaved=0)
             kept_verdict = verdict_file(knowledge)
             assert kept_verdict is not None
             write_durably(kept_verdict, json.dumps(EXAM.plain_of(passed)))
             answer = await client.send(NextRunRequest, world="b", fresh=False, task=None)
             assert answer.accepted, answer.text
-            moved = await state_where(client, first.boot, teacher="local", lessons=1)
+            moved = await state_where(client, lambda now: now.boot != first.boot, teacher="local", lessons=1)
             assert await client.exam() == passed
             answer = await client.send(NextRunRequest, world=None, fresh=True, task=None)
             assert answer.accepted, answer.text
-            second = await state_where(client, moved.boot, teacher="local", lessons=0)
+            second = await state_where(client, lambda now: now.boot != moved.boot, teacher="local", lessons=0)
             assert await client.exam() == NO_EXAM, "of the new file"
             assert second.stopped == NEXT_RUN
             assert (second.left_m_s, second.right_m_s) == (0.0, 0.0)
@@ -232,12 +212,14 @@ async def test_next_run_keeps_teacher_lessons_and_verdict(tmp_path: Path) -> Non
             saved = (knowledge.parent / "wall_following.knowledge.1").read_bytes()
             answer = await client.load(saved)
             assert answer.accepted, answer.text
-            third = await state_where(client, second.boot, teacher="local", lessons=1, unsaved=0)
+            third = await state_where(
+                client, lambda now: now.boot != second.boot, teacher="local", lessons=1, unsaved=0
+            )
             assert (await client.send(SpeedRequest, times=3)).accepted
             # Ticks of robot time go on one by one, none is missed; and again at the speed of real time.
-            faster = await state_at(client, third.tick + 30)
+            faster = await state_where(client, lambda now: now.tick >= third.tick + 30)
             assert (await client.send(SpeedRequest, times=1)).accepted
-            slower = await state_at(client, faster.tick + 30)
+            slower = await state_where(client, lambda now: now.tick >= faster.tick + 30)
             assert slower.boot == third.boot
         robot.wait_for(f"kept as {Path('var', 'wall_following.knowledge.1')}")
     for each in (knowledge, knowledge.with_name("wall_following.knowledge.1")):

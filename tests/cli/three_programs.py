@@ -13,12 +13,12 @@ from hal.bus import CONTROL_ID, CanBus, open_bus
 from hal.codec import load_codec
 from hal.control import RawControl, decode_control
 from hal.kurt2_settings import load_kurt2
-from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.standing import STARTED
 from kurt2rt.core.teaching.commands import Resume, Take, Teach
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import NoAnswerError
 from tests.cli.helpers import Running, running
+from tests.teacher.states_of import state_where
 
 ROBOT = load_kurt2()
 CODEC = load_codec()
@@ -116,15 +116,6 @@ async def teacher_of(robot: Running, folder: Path) -> AsyncIterator[TeacherClien
     line = await anyio.to_thread.run_sync(robot.wait_for, "teachers are listened to on UDP port")
     async with TeacherClient(folder / "var/devices/local", port=int(line.split()[-1])) as teacher:
         yield teacher
-
-
-async def state_where(robot: TeacherClient, true: Callable[[State], bool]) -> State:
-    """Return the first state that the predicate accepts."""
-    with anyio.fail_after(LONG_ENOUGH_S):
-        async for state in robot.states():
-            if true(state):
-                return state
-    raise AssertionError("the client ended")
 
 
 async def teach_kill_and_return(bus: str, folder: Path) -> int:

@@ -1,6 +1,9 @@
 """A basic level over a situation of one number, whose actions tell how often they began."""
 
+from typing import Any
+
 import numpy as np
+import pytest
 
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
@@ -51,3 +54,13 @@ def situation(place: float) -> Situation:
 
 def sensed(*infrared_counts: int) -> SensorReadings:
     return SensorReadings(0.0, infrared_counts, 0.0, 0, 0, 0.0, 0, 0.0)
+
+
+def runs_away(monkeypatch: pytest.MonkeyPatch, **wrong: Any) -> None:
+    """Let the basic level decide something wrong from now on."""
+    decide = BasicLevel.decide
+
+    def decides(level: BasicLevel, *words: Any) -> Decision:
+        return decide(level, *words)._replace(**wrong)
+
+    monkeypatch.setattr(BasicLevel, "decide", decides)

@@ -11,7 +11,7 @@ from behaviors.motor_primitive import MotorPrimitive
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.decision.decision import ActiveBehaviour, Decision, DecisionCause
+from kurt2rt.core.decision.decision import ActiveBehaviour, DecisionCause
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.perception.perception import Perception
@@ -27,6 +27,7 @@ from kurt2rt.core.tick import Tick
 from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.tick_timer import TickTimer
+from tests.core.helpers import runs_away
 from tests.core.perception.helpers import READINGS, SENSORS, WHEELS, definition
 from tests.teacher.helpers import correct, delete, resume, stop, teach
 
@@ -329,14 +330,9 @@ def test_tick_blind_robot_stands_without_asking_or_learning(driving: Corridor) -
 def test_tick_faulty_level_does_not_drive_a_stopped_robot(
     driving: Corridor, monkeypatch: pytest.MonkeyPatch, says_why: bool
 ) -> None:
-    decide = BasicLevel.decide
-
-    def runs_away(level: BasicLevel, *words: object) -> Decision:
-        decision = decide(level, *words)._replace(wheel_speeds=FORWARD)  # type: ignore[arg-type]
-        return decision._replace(cause=DecisionCause.RLA, action="ahead", rla_id=1) if says_why else decision
-
     driving.run(None, stop("enough"))
-    monkeypatch.setattr(BasicLevel, "decide", runs_away)
+    wrong = {"cause": DecisionCause.RLA, "action": "ahead", "rla_id": 1} if says_why else {}
+    runs_away(monkeypatch, wheel_speeds=FORWARD, **wrong)
     for _ in range(5):
         record = driving.run()
         assert record.decision.cause is DecisionCause.STOPPED

@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, WheelSpeeds
-from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import (
@@ -34,6 +33,7 @@ from kurt2rt.core.teaching.commands import (
     Watch,
 )
 from kurt2rt.core.tick_record import TickRecord
+from tests.core.helpers import runs_away
 from tests.core.test_tick import FORWARD, Corridor
 from tests.examples import examples
 from tests.teacher.helpers import resume, set_phase, stop, teach
@@ -114,14 +114,8 @@ def test_a_stop_of_anyone_ends_the_press_in_the_same_tick(driving: Corridor, by:
 
 
 def test_manual_drive_with_faulty_level_credits_no_rla(driving: Corridor, monkeypatch: pytest.MonkeyPatch) -> None:
-    decide = BasicLevel.decide
-
-    def runs_away(level: BasicLevel, *words: object) -> Decision:
-        decision = decide(level, *words)  # type: ignore[arg-type]
-        return decision._replace(wheel_speeds=FORWARD, cause=DecisionCause.RLA, action="back", rla_id=1, answers=True)
-
     uses = dict(driving.statistics.uses)
-    monkeypatch.setattr(BasicLevel, "decide", runs_away)
+    runs_away(monkeypatch, wheel_speeds=FORWARD, cause=DecisionCause.RLA, action="back", rla_id=1, answers=True)
     for _ in range(5):
         record = driving.run(100, press(driving))
         assert (record.decision.cause, record.decision.rla_id) == (DecisionCause.TEACHER, None)

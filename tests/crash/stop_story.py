@@ -16,8 +16,9 @@ from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.teaching.commands import Resume, Take, Teach
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
-from tests.cli.three_programs import BRAKING_CYCLES, WATCHDOG_CYCLES, drives, is_control, stands, state_where, turns
+from tests.cli.three_programs import BRAKING_CYCLES, WATCHDOG_CYCLES, drives, is_control, stands, turns
 from tests.crash.programs import Program
+from tests.teacher.states_of import state_where
 
 ON_THE_SPOT = "spin_left"
 """Action that turns the robot in place for ever."""

@@ -31,13 +31,13 @@ from tests.cli.three_programs import (
     onlooker,
     runtime,
     stands,
-    state_where,
     teacher_of,
     turns,
     until_it_drives,
 )
 from tests.hil.drive import cansend
 from tests.hil.link import NAME, Link
+from tests.teacher.states_of import state_where
 
 STOP = "001#00000103FF0103FF"
 

@@ -23,11 +23,12 @@ from kurt2rt.platform.realtime_priority import UNIT_PRIORITY
 from kurt2rt.teacher import TeacherClient
 from tests.cli.helpers import Running, running
 from tests.cli.test_run_as_service import priorities_of
-from tests.cli.three_programs import brakes, is_control, onlooker, stands, state_where, turns, until_it_drives
+from tests.cli.three_programs import brakes, is_control, onlooker, stands, turns, until_it_drives
 from tests.hil.link import NAME as BUS
 from tests.hil.link import Link
 from tests.hil.simulated_time.installation import install_for_everybody
 from tests.hil.simulated_time.unit import NAME, STATE, Unit
+from tests.teacher.states_of import state_where
 
 PORT = 5683
 SYS_NICE = 1 << 23

@@ -9,7 +9,6 @@ import anyio
 import pytest
 
 from kurt2rt.channel.protocol.requests import PACKAGE, ExportRequest, SaveRequest
-from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.security.pairing import Pairing, pair
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
@@ -24,8 +23,8 @@ from kurt2rt.teacher.client.answer import RefusedError
 from simbridge.realtime import RealtimeWorld
 from simbridge.worlds.world_loading import load_world
 from tests.channel.lossy_link import LossyLink, Weather
-from tests.patience import PATIENCE_S
 from tests.service.rig import LONGEST_S, SETTINGS, Rig, eager_task, end_service, rig, settings_for
+from tests.teacher.states_of import state_where
 
 A_BAD_LINK = Weather(loss=0.1, delay_s=0.005, jitter_s=0.005, doubled=0.05, overtaken=0.05)
 
@@ -58,14 +57,6 @@ async def listening_robot(live: Rig, folder: Path) -> AsyncIterator[int]:
         await opened.wait()
         yield ports[0]
         end_service()
-
-
-async def state_where(robot: TeacherClient, **wanted: object) -> State:
-    with anyio.fail_after(PATIENCE_S):
-        async for state in robot.states():
-            if all(getattr(state, name) == value for name, value in wanted.items()):
-                return state
-    raise AssertionError("the client ended")
 
 
 def paired(folder: Path) -> Pairing:
@@ -116,20 +107,14 @@ async def test_drive_by_hand_is_shown_taught_and_undone_as_one(tmp_path: Path) -
             async with robot.driving() as drive:
                 assert drive.set((0.2, 0.2))
                 await anyio.sleep(0.6)
-            with anyio.fail_after(PATIENCE_S):
-                async for state in robot.states():
-                    if state.shown is not None:
-                        break
+            state = await state_where(robot, lambda state: state.shown is not None)
             assert state.shown is not None
             assert (state.shown.teacher, state.shown.actions) == ("phone", ("forward",))
             answer = await robot.teach_shown()
             assert answer.outcome is not None
             assert answer.outcome.code is ResultCode.DEMONSTRATION_TAUGHT
             lesson = answer.outcome.fields["lesson"]
-            with anyio.fail_after(PATIENCE_S):
-                async for state in robot.states():
-                    if state.lessons and not state.unsaved:
-                        break
+            await state_where(robot, lambda state: state.lessons > 0, unsaved=0)
             assert [line.command_id for line in await robot.lessons()] == [lesson]
             assert (await robot.send(Undo, lesson=str(lesson))).accepted
             await state_where(robot, rlas=0)
