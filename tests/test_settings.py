@@ -173,15 +173,12 @@ def test_a_key_without_a_value_is_named(some: list[Place], tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ("cycle_s: 0.01 ", "cycle_s: .nan ", r"^cycle_s: .*nan\)"),
         ("cycle_s: 0.01 ", "cycle_s: .inf ", r"^cycle_s: .*inf\)"),
-        ("cycle_s: 0.01 ", "cycle_s: 10 ms ", r"^cycle_s: .*'10 ms'\)"),
         ("cycle_s: 0.01 ", "cycle_s: '0.01' ", r"^cycle_s: .*'0.01'\)"),
         ("cycle_s: 0.01 ", "cycle_s: true ", r"^cycle_s: .*True\)"),
         ("cycle_s: 0.01 ", "cycle_s: 10.1 ", r"^cycle_s: .*10\.1\)"),
         ("cycle_s: 0.01 ", "cycle_s: 0 ", r"^cycle_s: .*0\)"),
         ("floor_counts: 70", "floor_counts: 70.5", r"^infrared\.floor_counts: .*70\.5\)"),
-        ("floor_counts: 70", "floor_counts: .nan", r"^infrared\.floor_counts: .*nan\)"),
         ("floor_counts: 70", "floor_counts: 1024", r"^infrared\.floor_counts: .*1023"),
         ("mode: SPEED_CM", "mode: FAST", r"^can\.speed_mode: .*'FAST'\)"),
         ("channel: ADC07", "channel: ADC15", r"^infrared\.sensors\.0\.channel: .*ADC14"),
@@ -210,14 +207,11 @@ def test_a_wrong_value_is_named_with_its_key_and_what_is_allowed(old: str, new: 
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ("gain_per_m", "gian_per_m", "gian_per_m: .*: kind, name, front_sensor, back_sensor,"),
-        ("angle_deg", "angle", "angle: .*: kind, name, angle_deg, speed_m_s"),
         (
             "kind: motor",
             "kind: motr",
             r"^actions\.0\.plugin\.kind: .*'motr'; .*: motor, keep_distance, .*did you mean motor\?",
         ),
-        ("kind: motor", "knd: motor", r"^actions\.0: .*'kind'"),
         ("name: back,", "name: forward,", r"\bforward\b"),
         ("name: back,", "name: ask,", r"^actions\.7\.motor\.name: .*\bask\b"),
         ("name: back,", "name: go back,", r"^actions\.7\.motor\.name: "),
@@ -318,14 +312,10 @@ def test_set_key_leads_to_a_place_of_a_list() -> None:
 @pytest.mark.parametrize(
     ("key", "value", "told"),
     [
-        ("learning.radios", "3", r"learning\.radios: .*: radius"),
         ("learning.radius", "near", r"learning\.radius: .*'near'.*--set learning\.radius"),
         ("learning", "{radius: 3}", r"learning\.history_weight: .* 2 .*--set learning"),
         ("policy.kind", "walls", r"policy\.kind: .*'walls'; .*: circle, "),
         ("learning.radius", "-1", r"learning\.radius: .*-1\)"),
-        ("names.first", "x", "names: .*: name"),
-        ("name.first", "x", r"name\.first: .*name"),
-        ("exam.worlds.1", "a", r"exam\.worlds\.1: .*exam\.worlds is a list"),
         ("learning.radius", "[", r"learning\.radius: .*'\['.*--set.*YAML"),
     ],
 )
@@ -343,9 +333,6 @@ def test_a_value_from_elsewhere_is_checked_as_the_file_s_own(key: str, value: st
 @pytest.mark.parametrize(
     ("content", "told"),
     [
-        (b"", "NoneType.*: kind, name, cycle_s, geometry"),
-        (b"a: 1\nb: 2\na: 3\n", "YAML: key 'a' "),
-        (b"1: x\n", "YAML: key 1 "),
         (b"? [a, b]\n: x\n", r"YAML: key \['a', 'b'\]"),
         (b'"a\\nb": 1\n', "^a b: "),
         (b"name: 2020-99-99\n", "YAML: .*month.* line 1"),
@@ -370,16 +357,6 @@ def test_a_file_that_holds_something_else_is_refused_in_one_line(content: bytes,
 def test_a_file_that_cannot_be_read_is_refused_in_one_line(tmp_path: Path) -> None:
     assert os.strerror(errno.EISDIR) in refusal(tmp_path, Kurt2Settings)
     assert os.strerror(errno.ENOENT) in refusal(tmp_path / "gone.yaml", Kurt2Settings)
-
-
-# Files that would hang or fill the program
-
-
-def test_a_yaml_alias_bomb_is_refused_before_it_is_expanded(tmp_path: Path) -> None:
-    bomb = tmp_path / "bomb.yaml"
-    nine = "".join(f"a{n}: &a{n} [{','.join([f'*a{n - 1}'] * 9)}]\n" for n in range(1, 10))
-    bomb.write_text(f"a0: &a0 [x,x,x,x,x,x,x,x,x]\n{nine}", encoding="utf-8")
-    assert "100000" in refusal(bomb, Kurt2Settings)
 
 
 # Files that would hang or fill the program
