@@ -72,21 +72,6 @@ def test_any_other_listener_of_python_can_hears_the_same_frames(ends: Ends) -> N
     assert len(robot_end.drain()) == 4
 
 
-@pytest.mark.parametrize(
-    ("spec", "remedy"),
-    [
-        ("nocan7", "ip link set nocan7 up"),
-        ("", "ip link set can0 up"),
-        ("lo", "virtual:NAME"),
-        ("virtual:", "virtual:NAME"),
-        ("shared:", "shared:NAME"),
-        ("serial:/dev/ttyS0", "shared:NAME"),
-        ("can0\0", "ip link set"),
-    ],
-)
-def test_a_bus_that_cannot_be_opened_is_explained_in_one_line(spec: str, remedy: str) -> None:
-    with pytest.raises(BusError) as caught:
-        open_bus(spec)
-    assert caught.value.where == f"bus {spec!r}"
-    assert remedy in caught.value.do
-    assert "\n" not in str(caught.value)
+def test_a_bus_whose_name_is_no_text_of_the_kernel_is_explained() -> None:
+    with pytest.raises(BusError, match="no such network interface"):
+        open_bus("can0\0")

@@ -42,7 +42,7 @@ def troubles() -> Iterator[tuple[str, str]]:
 
 def opening() -> Iterator[tuple[str, str]]:
     """Yield the error of each name of a bus that cannot be opened."""
-    for name in ("nocan7", "", "lo", "virtual:", "serial:x", "shared:a/b"):
+    for name in ("nocan7", "", "lo", "virtual:", "serial:x", "shared:", "shared:a/b"):
         with pytest.raises(BusError) as caught:
             open_bus(name)
         yield repr(name), str(caught.value)

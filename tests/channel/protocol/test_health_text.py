@@ -5,16 +5,14 @@ from dataclasses import replace
 import pytest
 
 from kurt2rt.channel.protocol.health import Trouble
-from kurt2rt.channel.protocol.health_text import lasting, lines_of, rows_of, size, trouble_in
+from kurt2rt.channel.protocol.health_text import lasting, rows_of, size, trouble_in
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
-from tests.service.health.reports import ILL, LATE, WELL
+from tests.service.health.reports import WELL
 
 
-def test_trouble_in_appends_duration_and_remedy() -> None:
-    assert trouble_in(LATE) == f"{LATE.what} (for 3 min 5 s): {LATE.to_do}"
+def test_trouble_without_a_remedy_has_its_duration() -> None:
     drops = Trouble(TroubleCode.DROPS, 185.0, False, "lines", (40,))
     assert trouble_in(drops) == f"{drops.what} (for 3 min 5 s)"
-    assert f"! {trouble_in(LATE)}" in lines_of(ILL)
 
 
 @pytest.mark.parametrize(

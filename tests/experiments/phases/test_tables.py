@@ -7,7 +7,7 @@ import pytest
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.phases.results import Stage, interventions, paired, score_of, verdicts
 from kurt2rt.experiments.phases.steps import PATH, Judgement, Step
-from kurt2rt.experiments.phases.tables import all_tables, words_of_controls
+from kurt2rt.experiments.phases.tables import all_tables
 from kurt2rt.experiments.study.table import Verdict
 from tests.experiments.phases.outcomes import TASK, exam, stage, study, teaching
 from tests.experiments.rows import cells, titled
@@ -55,17 +55,6 @@ def test_why_somebody_had_to_come_is_told_apart() -> None:
     row = cells(titled(all_tables(study(long_run=robots), []), "Interventions"))
     assert (row["hours"], row["collisions"], row["stuck"], row["unknown for long"]) == ("4.0", "2", "2", "4")
     assert row["an hour"] == "2.00"
-
-
-def test_a_control_that_equals_another_is_said_to() -> None:
-    words = list(words_of_controls(study(2)))
-    assert any(each.startswith(f"{Step.UNKNOWN_BAD.label}: 2 of 2 ") for each in words)
-    equal = [each for each in words if each.startswith(f"{Step.ASKS.label}: ")]
-    assert len(equal) == 1
-    assert Step.CORRUPTED.label in equal[0]
-    silent = [stage(Step.ASKS, exam(progress=7.0), taught=teaching(asks=0)) for _ in range(2)]
-    (said,) = (each for each in words_of_controls(study(2, asks=silent)) if each.startswith(f"{Step.ASKS.label}: "))
-    assert Step.CORRUPTED.label not in said
 
 
 def test_a_critic_of_which_too_little_was_heard_says_so() -> None:
