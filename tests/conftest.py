@@ -14,6 +14,7 @@ from xdist.remote import Producer
 from xdist.scheduler.loadfile import LoadFileScheduling
 
 from config import plugins
+from kurt2rt.channel.security.pairing import Pairing, pair
 from tests.examples import register_profiles
 from tests.forked_program import fork_server
 
@@ -103,6 +104,12 @@ def pytest_collection_finish() -> None:
 def _forget_loaded_plugins(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let no test see the plug-ins that another one loaded: a unit of systemd, for one, is refused with them."""
     monkeypatch.setattr(plugins, "_LOADED", {})
+
+
+@pytest.fixture
+def pairing(tmp_path: Path) -> Pairing:
+    """Return the pairing of a device named phone."""
+    return pair(tmp_path / "teachers", tmp_path / "devices", "phone")
 
 
 @pytest.fixture

@@ -31,25 +31,10 @@ NUMBER = struct.Struct("=q")
 DESCRIPTORS = 4
 """Descriptors of each order: standard input, output and errors of the program, and the pipe for both numbers."""
 _MODULES = (
-    "aiocoap.oscore",
-    "aiocoap.transports.udp6",
-    "anyio._backends._asyncio",
-    "anyio.streams.tls",
-    "kurt2rt.cli.commission",
-    "kurt2rt.cli.main",
-    "kurt2rt.cli.run",
-    "kurt2rt.cli.sim",
-    "simbridge.sim_console",
-    "kurt2rt.cli.teach",
-    "behaviors.metrics.laps",
-    "kurt2rt.teacher.page.server",
-    "kurt2rt.service.serve",
-    "simbridge.realtime",
-    "numpy.ma",
-    "rich._emoji_codes",
-    "simbridge.realtime",
-    "typer._adapters",
-    "uvicorn",
+    *("aiocoap.oscore", "aiocoap.transports.udp6", "anyio._backends._asyncio", "anyio.streams.tls"),
+    *("kurt2rt.cli.commission", "kurt2rt.cli.main", "kurt2rt.cli.run", "kurt2rt.cli.sim", "simbridge.sim_console"),
+    *("kurt2rt.cli.teach", "behaviors.metrics.laps", "kurt2rt.teacher.page.server", "kurt2rt.service.serve"),
+    *("simbridge.realtime", "numpy.ma", "rich._emoji_codes", "simbridge.realtime", "typer._adapters", "uvicorn"),
 )
 
 

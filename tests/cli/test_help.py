@@ -74,16 +74,7 @@ def test_completion_offers_what_was_begun(
 
 
 HEAVY = (
-    "numpy",
-    "can",
-    "cantools",
-    "aiocoap",
-    "anyio",
-    "cryptography",
-    "matplotlib",
-    "pymunk",
-    "scipy",
-    "segno",
+    *("numpy", "can", "cantools", "aiocoap", "anyio", "cryptography", "matplotlib", "pymunk", "scipy", "segno"),
     "starlette",
 )
 """Packages that take most of the import time."""
@@ -103,10 +94,6 @@ def test_help_imports_nothing_of_what_a_command_needs(words: list[str]) -> None:
 def test_long_help_has_panels_and_flags_take_no_type(kurt2rt: CommandLine) -> None:
     said = kurt2rt("run", "--help").out
     assert [line.strip("╭─╮") for line in said.splitlines() if line.startswith("╭")] == [
-        " Options ",
-        " Robot and world ",
-        " Teaching ",
-        " Page and network ",
-        " Recording ",
+        *(" Options ", " Robot and world ", " Teaching ", " Page and network ", " Recording "),
     ]
     assert "<bool>" not in said

@@ -13,15 +13,9 @@ from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages
 from tests.cli.helpers import CommandLine
 
 REPORTS: tuple[tuple[str, ...], ...] = (
-    ("--version",),
-    ("plugin", "list"),
-    ("pair", "--list"),
-    ("pair", "phone"),
-    ("service", "show", "--bus", "can0"),
-    ("status",),
-    ("knowledge", "list", "."),
-    ("knowledge", "show", "taught.knowledge", "--rla", "1"),
-    ("knowledge", "check", "taught.knowledge"),
+    *(("--version",), ("plugin", "list"), ("pair", "--list"), ("pair", "phone")),
+    *(("service", "show", "--bus", "can0"), ("status",), ("knowledge", "list", ".")),
+    *(("knowledge", "show", "taught.knowledge", "--rla", "1"), ("knowledge", "check", "taught.knowledge")),
     ("exam", "taught.knowledge", "--world", "nowhere-\udcff"),
 )
 

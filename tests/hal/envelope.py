@@ -20,11 +20,7 @@ _SLACK_S = 1e-9
 _SLACK_M_S = 1e-9
 
 STANDS_FOR: Final = (
-    "not a number",
-    "clock ran backwards",
-    "command too old",
-    "range sensors stale",
-    "encoder stale",
+    *("not a number", "clock ran backwards", "command too old", "range sensors stale", "encoder stale"),
     "bumper stale",
 )
 """Reasons to stand for one tick."""

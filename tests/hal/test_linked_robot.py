@@ -76,17 +76,10 @@ def test_bumper_that_is_in_no_table_is_left_out(scene: Scene) -> None:
 @pytest.mark.parametrize(
     "report",
     [
-        RangeReport(50.0, 0, (1024,)),
-        RangeReport(50.0, 0, (-1,)),
-        RangeReport(50.0, -1, (100,)),
-        RangeReport(50.0, 0, ()),
-        RangeReport(50.0, len(SENSORS), (100,)),
-        RangeReport(51.0, 0, (100,)),
-        RangeReport(math.nan, 0, (100,)),
-        WheelReport(50.0, 5, 5, math.nan),
-        WheelReport(50.0, 5, 5, -0.01),
-        WheelReport(50.0, 5, 5, math.inf),
-        BumperReport(math.inf, 0b1),
+        *(RangeReport(50.0, 0, (1024,)), RangeReport(50.0, 0, (-1,)), RangeReport(50.0, -1, (100,))),
+        *(RangeReport(50.0, 0, ()), RangeReport(50.0, len(SENSORS), (100,)), RangeReport(51.0, 0, (100,))),
+        *(RangeReport(math.nan, 0, (100,)), WheelReport(50.0, 5, 5, math.nan), WheelReport(50.0, 5, 5, -0.01)),
+        *(WheelReport(50.0, 5, 5, math.inf), BumperReport(math.inf, 0b1)),
     ],
 )
 def test_junk_changes_nothing_and_is_counted(scene: Scene, report: Report) -> None:

@@ -33,15 +33,9 @@ def test_operation_with_other_last_bits_is_found(source: str, name: str) -> None
 @pytest.mark.parametrize(
     "source",
     [
-        "sum(each > 0 for each in counts)",
-        "sum(1 for _ in rows)",
-        "sum([len(each) for each in rows])",
-        "math.fsum(shares)",
-        "math.sqrt(x) + math.hypot(x, y) + math.dist(a, b)",
-        "round_portable(1.0 - math.exp(-x))",
-        "round(math.sin(x), 6)",
-        "10**6 + 2.0**-32",
-        "cos_sin(heading_rad)",
+        *("sum(each > 0 for each in counts)", "sum(1 for _ in rows)", "sum([len(each) for each in rows])"),
+        *("math.fsum(shares)", "math.sqrt(x) + math.hypot(x, y) + math.dist(a, b)"),
+        *("round_portable(1.0 - math.exp(-x))", "round(math.sin(x), 6)", "10**6 + 2.0**-32", "cos_sin(heading_rad)"),
     ],
 )
 def test_operation_with_equal_last_bits_is_not_found(source: str) -> None:

@@ -44,13 +44,8 @@ def test_sectors_scan_of_front_alone_leaves_the_rest_unmeasured() -> None:
 @pytest.mark.parametrize(
     "wrong",
     [
-        {"range_max": math.inf},
-        {"range_min": math.nan},
-        {"range_min": 4.0},
-        {"angle_increment": 0.0},
-        {"angle_increment": math.nan},
-        {"angle_min": math.inf},
-        {"ranges": np.zeros(0, dtype=np.float32)},
+        *({"range_max": math.inf}, {"range_min": math.nan}, {"range_min": 4.0}, {"angle_increment": 0.0}),
+        *({"angle_increment": math.nan}, {"angle_min": math.inf}, {"ranges": np.zeros(0, dtype=np.float32)}),
     ],
 )
 def test_sectors_senseless_scan_is_refused(wrong: dict[str, object]) -> None:

@@ -127,13 +127,8 @@ def lessons() -> Iterator[tuple[str, str]]:
 def features() -> Iterator[tuple[str, str]]:
     """Yield places and values of features."""
     for feature in (
-        "s9",
-        "s9 (10 s average)",
-        "maximum front",
-        "minimum rear (10 s average)",
-        "orientation left s2>s1",
-        "wheel speed left",
-        "junction",
+        *("s9", "s9 (10 s average)", "maximum front", "minimum rear (10 s average)", "orientation left s2>s1"),
+        *("wheel speed left", "junction"),
     ):
         yield feature, WORDS.place(feature)
     for counts in (0, 70, 441, 1023):

@@ -9,7 +9,7 @@ from aiocoap import oscore
 
 from kurt2rt.channel.security.context_folder import ContextFolder, CredentialsError
 from kurt2rt.channel.security.oscore_context import CHUNK, OscoreContext
-from kurt2rt.channel.security.pairing import Pairing, pair, renew
+from kurt2rt.channel.security.pairing import Pairing, renew
 from tests.channel.sides import answer_challenge, ask, ask_until_fresh, sequence_of
 from tests.cli.helpers import ROOT, started
 from tests.patience import PATIENCE_S
@@ -18,11 +18,6 @@ from tests.patience import PATIENCE_S
 def opened(folder: Path, chunk: int = CHUNK) -> OscoreContext:
     """Open a context with a clock before the pairing, so that the stored numbers count."""
     return OscoreContext(folder, chunk=chunk, now=lambda: 0.0)
-
-
-@pytest.fixture
-def pairing(tmp_path: Path) -> Pairing:
-    return pair(tmp_path / "teachers", tmp_path / "devices", "phone")
 
 
 class SlowDisk:

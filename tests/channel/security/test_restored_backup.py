@@ -10,17 +10,12 @@ import pytest
 from aiocoap import oscore
 
 from kurt2rt.channel.security.oscore_context import OscoreContext
-from kurt2rt.channel.security.pairing import Pairing, pair
+from kurt2rt.channel.security.pairing import Pairing
 from tests.channel.clock import Clock
 from tests.channel.sides import answer_challenge, ask, carried
 
 _MOST_PER_S = 200
 """A device says no more: the robot hears no more of one."""
-
-
-@pytest.fixture
-def pairing(tmp_path: Path) -> Pairing:
-    return pair(tmp_path / "teachers", tmp_path / "devices", "phone")
 
 
 def _paired_s(folder: Path) -> float:

@@ -214,16 +214,9 @@ async def test_wheels_step_refuses_yes_if_encoders_disagree(tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("answer", "seen"),
     [
-        ("left forward", Motion(1, 0)),
-        ("r b", Motion(0, -1)),
-        ("both backward", Motion(-1, -1)),
-        ("none", Motion(0, 0)),
-        ("n", Motion(0, 0)),
-        ("", None),
-        ("left", None),
-        ("none forward", None),
-        ("left sideways", None),
-        ("up forward", None),
+        *(("left forward", Motion(1, 0)), ("r b", Motion(0, -1)), ("both backward", Motion(-1, -1))),
+        *(("none", Motion(0, 0)), ("n", Motion(0, 0)), ("", None), ("left", None), ("none forward", None)),
+        *(("left sideways", None), ("up forward", None)),
     ],
 )
 def test_parse_seen_reads_two_words(answer: str, seen: Motion | None) -> None:

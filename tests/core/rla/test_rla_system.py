@@ -223,13 +223,8 @@ def around(system: RlaSystem, rla_id: int, count: int) -> list[int]:
 def test_neighbours_have_other_conditions_nearest_first() -> None:
     system = RlaSystem(2, 5.0, others={CRITIC: Space(2, 1.0)})
     for event in (
-        created(1, (0.0, 0.0)),
-        created(2, (0.0, 0.0), "back"),
-        created(3, (3.0, 0.0)),
-        created(4, (-1.0, 0.0)),
-        created(5, (3.0, 0.0), "left"),
-        created(6, (0.0, 9.0)),
-        created(7, (0.1, 0.0), behaviour="turn_left"),
+        *(created(1, (0.0, 0.0)), created(2, (0.0, 0.0), "back"), created(3, (3.0, 0.0)), created(4, (-1.0, 0.0))),
+        *(created(5, (3.0, 0.0), "left"), created(6, (0.0, 9.0)), created(7, (0.1, 0.0), behaviour="turn_left")),
         created(8, (0.1, 0.0), "bad", level=CRITIC),
     ):
         system.apply(event)

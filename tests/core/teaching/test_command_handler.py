@@ -349,13 +349,8 @@ def test_pursue_needs_authority_and_keeps_a_stop() -> None:
 @pytest.mark.parametrize(
     "command",
     [
-        Teach("x", "critic", "a"),
-        Correct("x", "critic", "a"),
-        Reward("x", "critic", 1),
-        Undo("x", "critic"),
-        SetPhase("x", "critic", Phase.AUTONOMOUS),
-        Resume("x", "critic"),
-        Take("x", "critic"),
+        *(Teach("x", "critic", "a"), Correct("x", "critic", "a"), Reward("x", "critic", 1), Undo("x", "critic")),
+        *(SetPhase("x", "critic", Phase.AUTONOMOUS), Resume("x", "critic"), Take("x", "critic")),
         HandOver("x", "Ann", "critic"),
     ],
 )

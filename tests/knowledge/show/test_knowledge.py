@@ -62,14 +62,7 @@ def test_render_knowledge_has_teacher_time_and_former_action(path: Path) -> None
     first, second = rows(lines)
     when = STAMP[:19].replace("T", " ") + ", Hertha"
     assert first == [
-        "1",
-        "forward",
-        when,
-        "1",
-        "1",
-        "41",
-        "maximum front 81, wheel speed left -5, s1 0",
-        "2 (75 %), 1 (25 %)",
+        *("1", "forward", when, "1", "1", "41", "maximum front 81, wheel speed left -5, s1 0", "2 (75 %), 1 (25 %)"),
     ]
     assert second[:7] == ["2", "left", "forward", when, "2", "200", "7"]
 

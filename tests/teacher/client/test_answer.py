@@ -21,13 +21,9 @@ def test_answer_of_each_code_gives_the_outcome_back(code: ResultCode | RefusalCo
 @pytest.mark.parametrize(
     "told",
     [
-        {},
-        {"code": "of another program", "fields": {}},
-        {"code": RefusalCode.NO_RLA.value, "fields": {}},
-        {"code": RefusalCode.NO_RLA.value},
-        {"code": RefusalCode.NO_RLA.value, "fields": {"rla": {}}},
-        {"code": 7, "fields": {"rla": 7}},
-        {"code": [], "fields": []},
+        *({}, {"code": "of another program", "fields": {}}, {"code": RefusalCode.NO_RLA.value, "fields": {}}),
+        *({"code": RefusalCode.NO_RLA.value}, {"code": RefusalCode.NO_RLA.value, "fields": {"rla": {}}}),
+        *({"code": 7, "fields": {"rla": 7}}, {"code": [], "fields": []}),
     ],
 )
 def test_text_on_without_a_known_outcome_is_the_robots(told: dict[str, Any]) -> None:

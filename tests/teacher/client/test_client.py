@@ -85,11 +85,6 @@ class Clock:
 
 
 @pytest.fixture
-def pairing(tmp_path: Path) -> Pairing:
-    return pair(tmp_path / "teachers", tmp_path / "devices", "phone")
-
-
-@pytest.fixture
 async def robot(pairing: Pairing) -> AsyncIterator[StandInRobot]:
     async with in_a_task_of_its_own(stand_in_robot(pairing.teacher.parent)) as robot:
         yield robot

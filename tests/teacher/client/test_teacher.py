@@ -3,7 +3,6 @@
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import TypeVar
 
 import anyio
@@ -13,7 +12,7 @@ import pytest
 import kurt2rt.teacher
 from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.security.context_folder import CredentialsError
-from kurt2rt.channel.security.pairing import ONLOOKER, Pairing, pair
+from kurt2rt.channel.security.pairing import ONLOOKER, Pairing
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.teaching.commands import Correct, Resume, Take, Teach, Undo, Watch
 from kurt2rt.teacher import RobotProcess, Teacher
@@ -23,11 +22,6 @@ from tests.patience import PATIENCE_S
 from tests.teacher.stand_in_robot import stand_in_robot
 
 _Result = TypeVar("_Result")
-
-
-@pytest.fixture
-def pairing(tmp_path: Path) -> Pairing:
-    return pair(tmp_path / "teachers", tmp_path / "devices", "phone")
 
 
 @pytest.fixture(scope="module")

@@ -27,21 +27,11 @@ _NOWHERE = "about:blank"
 # them was most of what the stories took. A transition is painted many times. Optimising the page's scripts takes
 # longer than it saves in the seconds of a story.
 _FLAGS = (
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-extensions",
-    "--disable-sync",
-    "--disable-site-isolation-trials",
-    "--process-per-site",
-    "--renderer-process-limit=1",
+    *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
+    *("--disable-background-networking", "--disable-component-update", "--disable-extensions", "--disable-sync"),
+    *("--disable-site-isolation-trials", "--process-per-site", "--renderer-process-limit=1"),
     "--disable-features=SpareRendererForSitePerProcess,BackForwardCache,site-per-process,IsolateOrigins",
-    "--force-prefers-reduced-motion",
-    "--js-flags=--no-opt,--no-maglev",
+    *("--force-prefers-reduced-motion", "--js-flags=--no-opt,--no-maglev"),
 )
 
 # What WebDriver's own questions come to, each in one short command.

@@ -128,14 +128,8 @@ def test_public_address_is_written_as_browsers_do(text: str, place: str) -> None
 @pytest.mark.parametrize(
     "text",
     [
-        "",
-        "robot.example",
-        "http://robot.example",
-        "https://",
-        "https://robot.example/page",
-        "https://me@robot.example",
-        "https://robot.example:port",
-        "https://robot.example; script-src *",
+        *("", "robot.example", "http://robot.example", "https://", "https://robot.example/page"),
+        *("https://me@robot.example", "https://robot.example:port", "https://robot.example; script-src *"),
         "https://[",
     ],
 )
@@ -191,13 +185,8 @@ NAMES = {"robot-desk", "robot-desk.local"}
 @pytest.mark.parametrize(
     ("host", "name"),
     [
-        ("localhost:8642", "localhost"),
-        ("192.168.1.7", "192.168.1.7"),
-        ("[::1]:8642", "::1"),
-        ("Robot-Desk.local.:80", "robot-desk.local"),
-        ("", ""),
-        (":80", ""),
-        ("[", ""),
+        *(("localhost:8642", "localhost"), ("192.168.1.7", "192.168.1.7"), ("[::1]:8642", "::1")),
+        *(("Robot-Desk.local.:80", "robot-desk.local"), ("", ""), (":80", ""), ("[", "")),
     ],
 )
 def test_host_name_returns_name_or_address(host: str, name: str) -> None:
@@ -207,14 +196,9 @@ def test_host_name_returns_name_or_address(host: str, name: str) -> None:
 @pytest.mark.parametrize(
     ("host", "local_address"),
     [
-        ("127.0.0.1:8642", "127.0.0.1"),
-        ("localhost:8642", "127.0.0.1"),
-        ("localhost:8642", "::1"),
-        ("[::1]:8642", "::1"),
-        ("192.168.1.7:8642", "192.168.1.7"),
-        ("192.168.1.7:8642", "::ffff:192.168.1.7"),
-        ("robot-desk:8642", "192.168.1.7"),
-        ("ROBOT-DESK.local:8642", "192.168.1.7"),
+        *(("127.0.0.1:8642", "127.0.0.1"), ("localhost:8642", "127.0.0.1"), ("localhost:8642", "::1")),
+        *(("[::1]:8642", "::1"), ("192.168.1.7:8642", "192.168.1.7"), ("192.168.1.7:8642", "::ffff:192.168.1.7")),
+        *(("robot-desk:8642", "192.168.1.7"), ("ROBOT-DESK.local:8642", "192.168.1.7")),
     ],
 )
 def test_is_own_host_local_address_and_names_are_own(host: str, local_address: str) -> None:
@@ -224,14 +208,9 @@ def test_is_own_host_local_address_and_names_are_own(host: str, local_address: s
 @pytest.mark.parametrize(
     ("host", "local_address"),
     [
-        ("evil.example:8642", "127.0.0.1"),
-        ("evil.example", "192.168.1.7"),
-        ("127.0.0.1.evil.example", "127.0.0.1"),
-        ("localhost.evil.example", "127.0.0.1"),
-        ("localhost", "192.168.1.7"),
-        ("192.168.1.8", "192.168.1.7"),
-        ("", "127.0.0.1"),
-        ("localhost", ""),
+        *(("evil.example:8642", "127.0.0.1"), ("evil.example", "192.168.1.7")),
+        *(("127.0.0.1.evil.example", "127.0.0.1"), ("localhost.evil.example", "127.0.0.1")),
+        *(("localhost", "192.168.1.7"), ("192.168.1.8", "192.168.1.7"), ("", "127.0.0.1"), ("localhost", "")),
     ],
 )
 def test_is_own_host_foreign_name_is_not_own(host: str, local_address: str) -> None:
@@ -397,13 +376,8 @@ def test_accepts_cookies_only_of_this_token_and_device() -> None:
 @pytest.mark.parametrize(
     ("origin", "ours"),
     [
-        ("http://desk:8642", True),
-        ("HTTP://Desk:8642", True),
-        ("http://desk", False),
-        ("https://desk:8642", False),
-        ("http://evil.example", False),
-        ("null", False),
-        ("", False),
+        *(("http://desk:8642", True), ("HTTP://Desk:8642", True), ("http://desk", False)),
+        *(("https://desk:8642", False), ("http://evil.example", False), ("null", False), ("", False)),
     ],
 )
 def test_is_own_origin_only_this_host_and_port(origin: str, *, ours: bool) -> None:

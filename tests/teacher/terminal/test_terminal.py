@@ -5,7 +5,6 @@ import threading
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import anyio
 import pytest
@@ -23,7 +22,7 @@ from kurt2rt.channel.protocol.requests import (
     StopRequest,
     WhyRequest,
 )
-from kurt2rt.channel.security.pairing import Pairing, pair
+from kurt2rt.channel.security.pairing import Pairing
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.rla.rla import Phase
@@ -133,11 +132,6 @@ async def console_at(pairing: Pairing, port: int, *, patience_s: float = LONGEST
 def reading_threads() -> set[threading.Thread]:
     """Return the threads that read a terminal."""
     return {each for each in threading.enumerate() if each.name == "terminal"}
-
-
-@pytest.fixture
-def pairing(tmp_path: Path) -> Pairing:
-    return pair(tmp_path / "teachers", tmp_path / "devices", "phone")
 
 
 @pytest.fixture
