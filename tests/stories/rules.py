@@ -86,21 +86,22 @@ class Rules:
     def on_fault_over(self, fault: Fault) -> None:
         """Complain unless the robot stood as the table demands, where nothing else failed and it drove before."""
         row = TABLE.cases.get(fault.target, {}).get(fault.kind)
-        alone = all(each is fault or each.end_s < fault.begin_s - LASTING_S for each in self.begun)
         # A disk stops it only by a lesson, a hand only one that drives.
-        judged = row is not None and row.leads_to == "stands" and fault.target not in ("disk", "teacher_link")
-        if row is None or not judged or not alone or self._started_s > fault.begin_s - _DROVE_S:
+        if row is None or row.leads_to != "stands" or fault.target in ("disk", "teacher_link"):
             return
         witness, within_s = self._witness, row.latches_within_s or row.within_s or 0.0
         if row.latches == GuardReason.WHEELS_DISOBEY:
             within_s *= _MANOEUVRE  # until it is told to change its speed
-        slowest = min(witness.slowest_m_s(fault.begin_s - _DROVE_S, fault.begin_s + within_s), 1.0)
-        if slowest < _SHOWS_M_S or fault.end_s - fault.begin_s < within_s or not fault.acts(fault.begin_s):
+        from_s, until_s = fault.begin_s - _DROVE_S, fault.begin_s + within_s
+        alone = all(each is fault or each.end_s < from_s or each.begin_s > until_s for each in self.begun)
+        if not alone or self._started_s > from_s or fault.end_s < until_s or not fault.acts(fault.begin_s):
+            return
+        if witness.slowest_m_s(from_s, until_s) < _SHOWS_M_S:
             return
         if not witness.standstills(fault.begin_s, fault.end_s):
             self.problems.append(f"{fault}: it did not stand")
         latched = witness.latched
-        if row.latches is not None and (latched is None or latched[0] > fault.begin_s + within_s + _ROUNDING_S):
+        if row.latches is not None and (latched is None or latched[0] > until_s + _ROUNDING_S):
             self.problems.append(f"{fault}: it was to be stopped because of {row.latches}, was {latched}")
 
     def on_end(self, knowledge: Path) -> None:
