@@ -43,7 +43,10 @@ class Outcome:
 async def told(story: Story) -> Told:
     """Drive a story in a folder of its own."""
     with TemporaryDirectory(dir=_MEMORY) as folder:
-        return await tell(story, Path(folder))
+        try:
+            return await tell(story, Path(folder))
+        except Exception as error:  # noqa: BLE001  # of whatever part: it is what broke
+            return Told(problems=[f"the story ended by {error!r}"])
 
 
 async def first_problem(story: Story) -> str:

@@ -107,6 +107,11 @@ class CableInterface:
         self._check_open()
         self._cable.carry(msg, self)
 
+    def send_if_open(self, frame: can.Message) -> None:
+        """Send a frame that was held up, unless this end is shut down: what waits in a driver is gone with it."""
+        if self._open:
+            self._cable.carry(frame, self)
+
     def shutdown(self) -> None:
         """Unplug the end; repeated calls do nothing."""
         self._open = False

@@ -42,8 +42,8 @@ class _RobotsEnd(CableInterface):
         if self._faults.are_quiet_for(msg):
             super().send(msg, timeout)
             return
-        send = super().send
-        self._faults.carry_from_board(Frame(msg.arbitration_id, bytes(msg.data)), lambda each: send(each, timeout))
+        self._check_open()
+        self._faults.carry_from_board(Frame(msg.arbitration_id, bytes(msg.data)), self.send_if_open)
 
     def deliver(self, frame: can.Message, at_s: float, *, own: bool) -> None:
         super().deliver(frame, at_s, own=own)
@@ -58,16 +58,10 @@ class _NotebooksEnd(CableInterface):
         super().__init__(cable)
         self._faults = faults
 
-    def send(self, msg: can.Message, timeout: float | None = None) -> None:
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
         """Send a frame through the driver, or later. Raises OSError if the adapter is gone."""
         self._check_open()
-        send = super().send
-
-        def send_if_open(each: Frame) -> None:
-            if self._open:  # what waits in a driver is gone with it
-                send(each, timeout)
-
-        self._faults.carry_from_notebook(Frame(msg.arbitration_id, bytes(msg.data)), send_if_open)
+        self._faults.carry_from_notebook(Frame(msg.arbitration_id, bytes(msg.data)), self.send_if_open)
 
     def deliver(self, frame: can.Message, at_s: float, *, own: bool) -> None:
         if own:
