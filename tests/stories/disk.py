@@ -1,5 +1,6 @@
 """Knowledge file on a disk that may fail, written in line, as far as simulated time has gone."""
 
+import math
 import sqlite3
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -22,6 +23,8 @@ _REFUSALS: dict[Kind, tuple[str, int]] = {
 }
 
 
+_HANGS_AFTER_S = 3.0
+"""Time after which a disk hangs, a second statement of the journal writer's."""
 _STATISTICS_EVERY = 10
 """Calls of `write` from one that writes statistics to the next."""
 
@@ -36,6 +39,8 @@ class FaultyJournal(Journal):
     injection: FaultInjection
     dies: Kind | None = None
     """Kill during the next write of lessons: before or after they are durable; None without one."""
+    refused_at_s: float | None = None
+    """Time of the first of the refusals since the last write; None without one."""
     is_sound = False
     """True at the end: no write fails any more."""
 
@@ -46,10 +51,12 @@ class FaultyJournal(Journal):
             text, code = _REFUSALS[fault.kind]
             error = sqlite3.OperationalError(text)
             error.sqlite_errorcode = code
+            self.refused_at_s = self.refused_at_s or self.injection.time.now_s()
             raise from_sqlite(error, self.path)
         if self.dies == "killed_before_commit":
             raise KilledError
         receipts = super().append(entries, statistics)
+        self.refused_at_s = None
         if self.dies == "killed_after_commit":
             raise KilledError
         return receipts
@@ -72,7 +79,7 @@ class KnowledgeFile:
         self.journal = FaultyJournal.open(path, opened.journal.binding)
         self.journal.injection = injection
         self.writer = JournalWriter(self.journal, now, clock=injection.time.now_s)
-        self._blocked_until_s = 0.0
+        self._blocked_at_s = self._blocked_until_s = 0.0
         self._was_blocked = False
         self._calls = 0
 
@@ -85,12 +92,20 @@ class KnowledgeFile:
         blocks = fault is not None and fault.kind in ("stuck", "slow", "delayed")
         if waits and blocks and (fault := self._injection.acting_on("disk")) is not None:
             until_s = fault.end_s if fault.kind == "stuck" else min(now_s + fault.delay_s, fault.end_s)
-            self._blocked_until_s, self._was_blocked = until_s, True
+            self._blocked_at_s, self._blocked_until_s, self._was_blocked = now_s, until_s, True
             return
         self._was_blocked = False
         self._calls += 1
         if self.writer.unwritten or self._calls % _STATISTICS_EVERY == 0:
             self.writer.write_waiting()
+
+    @property
+    def must_stand_since_s(self) -> float:
+        """Time from which on the robot must stand because the disk refuses a lesson, or hangs; or infinity."""
+        if self._time.now_s() < self._blocked_until_s:
+            return self._blocked_at_s + _HANGS_AFTER_S
+        refused_at_s = self.journal.refused_at_s
+        return math.inf if refused_at_s is None else refused_at_s
 
     def take_away(self, fault: Fault) -> None:
         """Write what waits, and put another file in the place of this one for as long as a planned fault lasts."""

@@ -26,6 +26,8 @@ _SHOWS_M_S = 0.2
 _ROUNDING_S = 1e-6
 _SILENT_S = 0.35
 """Time after the teachers' last message in which the robot may drive, before phase 5."""
+_UNSAVED_S = 0.05
+"""Time after a disk's refusal in which the robot may drive: some ticks."""
 _MANOEUVRE = 4.0
 """Factor of the time in which wheels show that they disobey, for a robot that turns and stops in between."""
 _STARTS_S = 0.1
@@ -66,8 +68,12 @@ class Rules:
         ):
             self.problems.append(f"the program ended by {error}")
 
-    def on_tick(self, record: TickRecord, now_s: float, heard_at_s: float) -> None:
-        """Judge a tick. `heard_at_s`: arrival of the newest message of any teacher, in simulated time."""
+    def on_tick(self, record: TickRecord, now_s: float, *, heard_at_s: float, unsaved_s: float) -> None:
+        """Judge a tick; times are simulated.
+
+        `heard_at_s`: arrival of the newest message of any teacher. `unsaved_s`: begin of the time in which lessons
+        cannot be saved, or infinity.
+        """
         story, over_s = self._story, self._story.over_s
         moves = record.guard_result.wheel_speeds != STANDSTILL
         if now_s <= max(over_s, story.lasts_s - CALM_S) + WORKS_AGAIN_S:
@@ -75,6 +81,8 @@ class Rules:
         if moves and story.teaching.phase < AUTONOMOUS and now_s - heard_at_s > _SILENT_S:
             silent_s = now_s - heard_at_s
             self.problems.append(f"at {now_s:.2f} s: it drives {silent_s:.2f} s after its teachers' last message")
+        if moves and now_s - unsaved_s > _UNSAVED_S:
+            self.problems.append(f"at {now_s:.2f} s: it drives though lessons cannot be saved since {unsaved_s:.2f} s")
         self._explain(record, now_s)
 
     def on_fault(self, fault: Fault) -> None:

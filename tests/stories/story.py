@@ -89,8 +89,9 @@ def story_of(seed: int, lasts_s: float) -> Story:
     busy: dict[Target, list[tuple[float, float]]] = {}
     for _ in range(chance.randint(0, MOST_FAULTS)):
         target, kind = chance.choice(kinds)
-        rare = TABLE.stories.get(target, {}).get(kind)
-        lasts = chance.uniform(*(_SPANS_S if rare is None else rare.lasts_s))
+        row, rare = TABLE.cases.get(target, {}).get(kind), TABLE.stories.get(target, {}).get(kind)
+        shortest, longest = _SPANS_S if rare is None else rare.lasts_s
+        lasts = chance.uniform(shortest, longest if row is None else row.lasts_s or longest)
         lasts = round(min(lasts, (lasts_s - CALM_S - FIRST_S) / 2), 3)
         at = round(chance.uniform(FIRST_S, lasts_s - CALM_S - lasts), 3)
         spans = busy.setdefault(target, [])

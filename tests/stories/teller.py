@@ -160,8 +160,11 @@ class _Teller:
         if record.number % _MINUTE_TICKS == 0:
             ctypes.CDLL(None).malloc_trim(0)
             self.told.resident_mb.append(psutil.Process().memory_info().rss / 1e6)
-        hand = None if self._program is None else self._program.hand
-        self._rules.on_tick(record, now_s, max(self._device.heard_at_s, -math.inf if hand is None else hand.heard_at_s))
+        assert self._program is not None
+        hand = self._program.hand
+        heard_at_s = max(self._device.heard_at_s, -math.inf if hand is None else hand.heard_at_s)
+        unsaved_s = self._program.knowledge.must_stand_since_s
+        self._rules.on_tick(record, now_s, heard_at_s=heard_at_s, unsaved_s=unsaved_s)
 
     def _plan(self, event: Event) -> None:
         fault = event.fault()
