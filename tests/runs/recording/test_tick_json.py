@@ -15,6 +15,7 @@ from kurt2rt.core.teaching.inbox import Input, SystemEvent
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.tick_json import _decoder, decode_command, decode_tick, encode_command, encode_tick
+from tests.core.rla.helpers import deleted
 from tests.strategies import EVENTS, values_of
 
 COMMANDS = (*get_args(Command), *get_args(SystemEvent))
@@ -39,6 +40,12 @@ def test_a_tick_comes_back_as_it_was(entry: TickEntry) -> None:
     again = decode_tick(encode_tick(entry))
     assert again == entry
     assert repr(again) == repr(entry)  # 0.0 is equal to -0.0, and 1 to 1.0
+
+
+@given(entries)
+def test_an_event_that_could_not_be_read_back_is_refused(entry: TickEntry) -> None:
+    with pytest.raises(RecordingError, match=r"cannot be written: .*rla_id"):
+        encode_tick(entry._replace(events=(deleted(0),)))
 
 
 @given(commands)

@@ -57,7 +57,7 @@ def open_exchanges(client: TeacherClient) -> int:
 
 CRITICS = tuple(AppraisalName(name, value) for name, value in (("bad", -1), ("neutral", 0), ("good", 1)))
 MIDS: dict[str, Any] = {"behaviours": ("straight_on", "turn_left"), "mid": MidIntroduction("history", 12, 6.0)}
-A_PUPIL = replace(A_HELLO, appraisals=CRITICS, trusted_from=0.8, seeks=True, **MIDS)
+A_PUPIL = replace(A_HELLO, what="Teach it to follow a wall", appraisals=CRITICS, trusted_from=0.8, seeks=True, **MIDS)
 INTRODUCED = Reply(ReplyStatus.DONE, HELLO.plain_of(A_PUPIL))
 HELD = Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
 
