@@ -2,32 +2,24 @@
 
 from collections.abc import Iterator
 
-import anyio
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from hal.guard_reason import GuardReason
-from hal.kurt2_settings import load_kurt2
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import DecisionCause, StandReason
 from kurt2rt.core.decision.standing import reason_text
-from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.learner.learner import LearnerSetting, Why
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.outcome import RefusalCode
-from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Command, DeleteRla, HoldAction, ReplaceAction, Reward, Teach, Undo
-from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.reasons import format_reasons, headline
-from kurt2rt.runtime import RuntimeOptions, build_runtime
-from simbridge.simulation import Kurt2SimulationFactory
 from tests.core.learner.helpers import SETTING, Parrot
+from tests.runs.explain.helpers import Lesson
 
-ROBOT = load_kurt2()
-TASK = load_task("wall_following")
 ACTIONS = ("forward", "spin_left", "spin_right", "teleport")
 
 
@@ -42,42 +34,27 @@ class Wayward(Parrot):
     """Parrot that a test can make fail."""
 
     mischief = ""
-    clock: StalledClock
+    robot: "TaughtRobot"
 
     def decide(self, situation: NDArray[np.float64], *, taught: bool) -> str | None:
         if self.mischief == "raises":
             raise ZeroDivisionError("no such number")
         if self.mischief == "slow":
-            self.clock.stall(0.05)
+            self.robot.clock.stall(0.05)
         return super().decide(situation, taught=taught)
 
 
-class TaughtRobot:
+class TaughtRobot(Lesson):
     """Simulated robot that decides by a parrot, and its teacher."""
 
     def __init__(self) -> None:
-        self._simulation = Kurt2SimulationFactory(ROBOT).open("a", 4, "parrot")
-        self._clock = StalledClock(self._simulation.step)
         self.team = LearnerTeam("parrot", self._make, SETTING._replace(actions=ACTIONS), ("",))
-        self.store = InMemoryEventStore()
-        self.runtime = build_runtime(
-            self._simulation.robot, ROBOT, TASK, (), self.store, self._clock, RuntimeOptions(learners=self.team)
-        )
-        self.records: list[TickRecord] = []
+        super().__init__(seed=4, clock=StalledClock, learners=self.team)
 
     def _make(self, setting: LearnerSetting) -> Wayward:
         self.parrot = Wayward(setting)
-        self.parrot.clock = self._clock
+        self.parrot.robot = self
         return self.parrot
-
-    def go_on(self, ticks: int, *commands: Command) -> TickRecord:
-        for command in commands:
-            self.runtime.inbox.put(command)
-        anyio.run(self.runtime.scheduler.run, ticks, self.records.append)
-        return self.records[-1]
-
-    def close(self) -> None:
-        self._simulation.close()
 
     def why(self) -> str:
         facts = collect_facts(self.runtime, self.records[-1], lambda command_id: command_id)
@@ -99,7 +76,7 @@ def test_undo_of_a_hold_takes_all_of_its_labels_back(robot: TaughtRobot) -> None
     robot.go_on(50)
     held = [each.why for each in robot.team.labels[1:]]
     assert held == [Why.HOLD] * len(held)
-    assert len(held) > len(robot.store.events) - 1 > 0  # most change no RLA
+    assert len(held) > len(robot.notebook.events) - 1 > 0  # most change no RLA
     robot.go_on(1, Undo("u-1", "Ann"))
     assert [each.command_id for each in robot.team.labels] == ["t-1"]
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import anyio
 
@@ -31,20 +32,17 @@ class Lesson:
         task: str = "wall_following",
         seed: int = 1,
         *,
-        attended: bool = False,
         changes: Mapping[str, str] | None = None,
+        clock: type[LockstepClock] = LockstepClock,
+        **options: Any,
     ) -> None:
+        """Begin; `options`: of the runtime."""
         settings = load_task(task, changes=changes or {})
         self.notebook = InMemoryEventStore()
         self._simulation = Kurt2SimulationFactory(ROBOT).open(settings.teaching.world, seed, "why")
+        self.clock: Any = clock(self._simulation.step)
         self.runtime = build_runtime(
-            self._simulation.robot,
-            ROBOT,
-            settings,
-            (),
-            self.notebook,
-            LockstepClock(self._simulation.step),
-            RuntimeOptions(attended=attended),
+            self._simulation.robot, ROBOT, settings, (), self.notebook, self.clock, RuntimeOptions(**options)
         )
         self.records: list[TickRecord] = []
 
