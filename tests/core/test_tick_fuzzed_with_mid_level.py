@@ -9,7 +9,6 @@ import pytest
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import Decision, DecisionCause, GoalStatus
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Phase
 from kurt2rt.core.task_settings import TaskSettings
@@ -35,8 +34,6 @@ from kurt2rt.core.teaching.commands import (
     Undo,
     Watch,
 )
-from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import RuntimeOptions, build_runtime
 from tests.channel.channel_fixture import ROBOT
 from tests.core.test_tick_seeking import PLACES
 from tests.core.test_tick_with_mid_level import (
@@ -45,7 +42,6 @@ from tests.core.test_tick_with_mid_level import (
     ROUTE,
     STEP_M,
     WALL,
-    StreetRobot,
     Town,
     basic_knowledge,
 )
@@ -58,19 +54,7 @@ class Bedlam(Town):
 
     def __init__(self, task: TaskSettings, seed: int, events: Sequence[TeachingEvent] = ()) -> None:
         """`events`: what was taught in a run before."""
-        self.robot = StreetRobot()
-        self.notebook = InMemoryEventStore()
-        self.taught_before = [*basic_knowledge(), *events]
-        self.runtime = build_runtime(
-            self.robot,
-            ROBOT,
-            task,
-            self.taught_before,
-            self.notebook,
-            LockstepClock(lambda: None),
-            RuntimeOptions(attended=True),
-        )
-        self.tick = self.passed = 0
+        super().__init__([*basic_knowledge(), *events], task=task, attended=True)
         self.chance = random.Random(seed)
         self.said: list[str] = ["nothing"]
         self._leg_ticks = 0

@@ -1,6 +1,7 @@
 """Rewards, the critic and what comes of them, through the whole tick of the shipped robot."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import pytest
 
@@ -30,22 +31,15 @@ class Drive:
         self,
         events: Sequence[TeachingEvent] = (),
         *,
-        saved: Statistics | None = None,
-        asked: bool = True,
         task: TaskSettings = TASK,
+        robot: WideRobot | None = None,
+        **options: Any,
     ) -> None:
-        self.robot = WideRobot()
+        """Begin with what was taught before; `options`: of the runtime."""
+        self.robot = robot or WideRobot()
         self.notebook = InMemoryEventStore()
-        clock = LockstepClock(lambda: None)
-        self.runtime = build_runtime(
-            self.robot,
-            ROBOT,
-            task,
-            events,
-            self.notebook,
-            clock,
-            RuntimeOptions(checkpoint=saved, teacher_available=asked),
-        )
+        clock, options_of = LockstepClock(lambda: None), RuntimeOptions(**options)
+        self.runtime = build_runtime(self.robot, ROBOT, task, events, self.notebook, clock, options_of)
         self.tick = 0
 
     def run(self, *commands: Command, ticks: int = 1, counts: int | None = None) -> TickRecord:
@@ -142,8 +136,8 @@ def withdrawn_and_neighbour() -> list[TeachingEvent]:
 def test_without_teacher_neighbours_answer_for_withdrawn_rla() -> None:
     events = withdrawn_and_neighbour()
     assert Drive(events).run(counts=NEAR).decision.asking
-    assert Drive(events, asked=False).run(counts=NEAR).decision.action == "back"
-    assert Drive(events[:2], asked=False).run(counts=NEAR).decision.asking
+    assert Drive(events, teacher_available=False).run(counts=NEAR).decision.action == "back"
+    assert Drive(events[:2], teacher_available=False).run(counts=NEAR).decision.asking
 
 
 def test_values_continue_from_checkpoint_or_journal_credits() -> None:
@@ -151,8 +145,8 @@ def test_values_continue_from_checkpoint_or_journal_credits() -> None:
     events = (created(1, (float(NEAR),) * 72), RlaRewarded(1, -1, 4, origin, (Credit(1, -0.05),)))
     assert Drive(events).runtime.reinforcement.value(1) == -0.05
     saved = Statistics(values={1: -0.08}, numbers={VALUES_INCLUDE: 2.0})
-    assert Drive(events, saved=saved).runtime.reinforcement.value(1) == -0.08
-    assert Drive(events, saved=Statistics(uses={1: 7})).runtime.reinforcement.value(1) == -0.05
+    assert Drive(events, checkpoint=saved).runtime.reinforcement.value(1) == -0.08
+    assert Drive(events, checkpoint=Statistics(uses={1: 7})).runtime.reinforcement.value(1) == -0.05
 
 
 def story(drive: Drive) -> tuple[list[TeachingEvent], Statistics]:

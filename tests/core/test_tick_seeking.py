@@ -8,7 +8,6 @@ import pytest
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import DecisionCause, GoalStatus, PlanStep
 from kurt2rt.core.decision.goal import Goal, NamedGoal
-from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.events import SituationNamed, TeachingEvent
 from kurt2rt.core.rla.rla import MID
@@ -25,10 +24,7 @@ from kurt2rt.core.teaching.commands import (
     Undo,
 )
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import build_runtime
-from tests.channel.channel_fixture import ROBOT
-from tests.core.test_tick_with_mid_level import OPEN, STREETS, WALL, StreetRobot, Town, basic_knowledge, told
+from tests.core.test_tick_with_mid_level import OPEN, STREETS, WALL, Town, told
 
 PLACES = STREETS.model_copy(update={"mid": "places"})
 QUARTERS = {"straight_on": 0, "turn_left": 1, "turn_right": -1}
@@ -39,12 +35,7 @@ class Block(Town):
     """Streets round a block: four left turns lead back to where the first one began."""
 
     def __init__(self, events: Sequence[TeachingEvent] | None = None) -> None:
-        self.robot = StreetRobot()
-        self.notebook = InMemoryEventStore()
-        self.taught_before = basic_knowledge() if events is None else list(events)
-        clock = LockstepClock(lambda: None)
-        self.runtime = build_runtime(self.robot, ROBOT, PLACES, self.taught_before, self.notebook, clock)
-        self.tick = self.passed = 0
+        super().__init__(events, task=PLACES)
         self.said = len(self.taught_before)  # ids of commands are not given twice
         self.street()
 

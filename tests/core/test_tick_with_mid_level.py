@@ -2,22 +2,21 @@
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import pytest
 
 from hal.robot import SensorReadings
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome import Field, Outcome, RefusalCode
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID
-from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Command, Correct, Pursue, ReplaceAction, Resume, Stop, Teach, Undo
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import RuntimeOptions, build_runtime
 from tests.channel.channel_fixture import ROBOT, WideRobot
 from tests.core.rla.helpers import created, deleted
+from tests.core.test_tick_learning import Drive
 
 STREETS = load_task("streets")
 ROUTE = STREETS.model_copy(update={"mid": "turns"})
@@ -52,27 +51,20 @@ class StreetRobot(WideRobot):
         return super().sense(now_s)._replace(encoder_left_ticks=left, encoder_right_ticks=right)
 
 
-class Town:
+class Town(Drive):
     """The shipped robot in streets, and one tick in a call."""
 
-    def __init__(self, events: Sequence[TeachingEvent] | None = None, *, attended: bool = False) -> None:
-        self.robot = StreetRobot()
-        self.notebook = InMemoryEventStore()
+    robot: StreetRobot
+
+    def __init__(
+        self, events: Sequence[TeachingEvent] | None = None, *, task: TaskSettings = ROUTE, **options: Any
+    ) -> None:
         self.taught_before = basic_knowledge() if events is None else list(events)
-        clock = LockstepClock(lambda: None)
-        self.runtime = build_runtime(
-            self.robot, ROBOT, ROUTE, self.taught_before, self.notebook, clock, RuntimeOptions(attended=attended)
-        )
-        self.tick = 0
+        super().__init__(self.taught_before, task=task, robot=StreetRobot(), **options)
         self.passed = 0
 
-    def run(self, *commands: Command) -> TickRecord:
-        self.tick += 1
-        for command in commands:
-            self.runtime.inbox.put(command)
-        self.runtime.timer.begin(0.0)
-        record = self.runtime.tick.run(self.tick, self.tick * 0.01)
-        self.runtime.timer.end()
+    def run(self, *commands: Command, ticks: int = 1, counts: int | None = None) -> TickRecord:
+        record = super().run(*commands, ticks=ticks, counts=counts)
         self.passed += record.mid is not None and record.mid.event is not None
         return record
 
@@ -168,12 +160,7 @@ def test_lesson_with_foreign_action_is_refused_unchanged(town: Town, command: Co
 
 
 def test_mid_lesson_without_mid_level_is_refused() -> None:
-    runtime = build_runtime(
-        StreetRobot(), ROBOT, STREETS, basic_knowledge(), InMemoryEventStore(), LockstepClock(lambda: None)
-    )
-    runtime.inbox.put(the_way("turn_left"))
-    runtime.timer.begin(0.0)
-    record = runtime.tick.run(1, 0.01)
+    record = Town(task=STREETS).run(the_way("turn_left"))
     assert told(record) == Outcome(RefusalCode.NO_MID_LEVEL)
     assert (record.mid, record.decision.asks_at) == (None, BASIC)
 

@@ -26,7 +26,7 @@ def drive() -> Drive:
 
 def going_on_from(drive: Drive) -> Drive:
     """Another run of that robot's program."""
-    return Drive(drive.notebook.events, saved=drive.runtime.snapshot())
+    return Drive(drive.notebook.events, checkpoint=drive.runtime.snapshot())
 
 
 def comes_and_goes(drive: Drive, times: int = 1, far: int = FAR) -> None:
@@ -51,7 +51,7 @@ def test_expectations_survive_a_restart(drive: Drive) -> None:
 def test_expectations_of_idle_level_are_kept() -> None:
     place = created(3, (1.0,) * LENGTH, level=MID)
     foreign = Expectation("lesson-3", 4, 800.0, pack(np.ones(LENGTH)), pack(np.zeros(LENGTH)))
-    drive = Drive([created(1, (0.0,) * 72), place], saved=Statistics(expectations={3: foreign, 9: foreign}))
+    drive = Drive([created(1, (0.0,) * 72), place], checkpoint=Statistics(expectations={3: foreign, 9: foreign}))
     assert drive.runtime.snapshot().expectations == {3: foreign}
 
 
@@ -64,9 +64,8 @@ def town() -> Town:
     return town
 
 
-def test_mid_expectation_ignores_localisation(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tests.core.test_tick_with_mid_level.ROUTE", STREETS.model_copy(update={"mid": "places"}))
-    town = Town()
+def test_mid_expectation_ignores_localisation() -> None:
+    town = Town(task=STREETS.model_copy(update={"mid": "places"}))
     town.way_to_the_first_junction()
     town.run(NameSituation("n", "Ann", "door"))
     town.run(the_way("straight_on", "first"))
