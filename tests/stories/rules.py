@@ -77,7 +77,9 @@ class Rules:
         story, over_s = self._story, self._story.over_s
         moves = record.guard_result.wheel_speeds != STANDSTILL
         if now_s <= max(over_s, story.lasts_s - CALM_S) + WORKS_AGAIN_S:
-            self._works = now_s >= over_s and (self._works or moves or record.decision.cause in ASKING)
+            # An action that a teacher taught by mistake may be to stand.
+            acts = record.decision.driving and _LIMITS.issuperset(record.guard_result.reasons)
+            self._works = now_s >= over_s and (self._works or acts or record.decision.cause in ASKING)
         if moves and story.teaching.phase < AUTONOMOUS and now_s - heard_at_s > _SILENT_S:
             silent_s = now_s - heard_at_s
             self.problems.append(f"at {now_s:.2f} s: it drives {silent_s:.2f} s after its teachers' last message")
