@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import can
 
-from hal.bus import CONTROL_ID
+from hal.bus import CONTROL_ID, BusError
 from hal.codec import Codec
 from hal.frame import Frame
 from tests.stories.cable import SOUND, Cable, CableFaults, CableInterface
@@ -60,7 +60,7 @@ class _NotebooksEnd(CableInterface):
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
         """Send a frame through the driver, or later. Raises OSError if the adapter is gone."""
-        self._check_open()
+        self._check_plugged()
         self._faults.carry_from_notebook(Frame(msg.arbitration_id, bytes(msg.data)), self.send_if_open)
 
     def deliver(self, frame: can.Message, at_s: float, *, own: bool) -> None:
@@ -71,7 +71,7 @@ class _NotebooksEnd(CableInterface):
             self._faults.on_heard(frame.arbitration_id, at_s)
             super().deliver(frame, at_s, own=False)
             return
-        if self._faults.is_off:
+        if self._faults.is_off or self._faults.is_unplugged:
             return
         # What waits in the notebook keeps its stamp and grows old; what is made there is stamped then.
         queue, now_s = super().deliver, self._cable.now_s
@@ -82,6 +82,16 @@ class _NotebooksEnd(CableInterface):
             queue(each, at_s if each is arrived else max(at_s, now_s()), own=False)
 
         self._faults.carry("bus_in", arrived, lambda each: self._faults.carry("cable", each, deliver))
+
+    def recv(self, timeout: float | None = None) -> can.Message | None:
+        """Return the oldest frame or None. Raises can.CanOperationError if the adapter is gone."""
+        self._check_plugged()
+        return super().recv(timeout)
+
+    def _check_plugged(self) -> None:
+        self._check_open()
+        if self._faults.is_unplugged:
+            raise can.CanOperationError("the adapter is gone")
 
     def hear(self, frame: Frame) -> None:
         """Receive a frame of another node."""
@@ -133,6 +143,9 @@ class EndFaults:
         return self._cable.join(_RobotsEnd(self._cable, self))
 
     def open_notebooks_end(self, _: str) -> CableInterface:
+        """Return a new end of the notebook. Raises BusError while the adapter is gone."""
+        if self.is_unplugged:
+            raise BusError("the adapter is gone")
         self._end = _NotebooksEnd(self._cable, self)
         return self._cable.join(self._end)
 
@@ -154,6 +167,11 @@ class EndFaults:
     def is_off(self) -> bool:
         """True while the notebook's CAN controller is off the bus: it hears nothing, and what it sends stays in it."""
         return self._injection.acting_on("controller") is not None and self._kind("controller") == "bus_off"
+
+    @property
+    def is_unplugged(self) -> bool:
+        """True while the notebook has no CAN adapter."""
+        return self._kind("controller") == "unplugged" and self._injection.acting_on("controller") is not None
 
     def begin(self, fault: Fault) -> None:
         """Do what a fault does at its beginning: a controller leaves the bus, a stranger begins to send."""

@@ -49,6 +49,7 @@ Kind = Literal[
     "reordered",
     "replayed",
     "bus_off",
+    "unplugged",
     "restart",
     "telemetry",
     "keys_renewed",

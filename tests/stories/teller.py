@@ -107,6 +107,10 @@ class _Teller:
         told, story, chance = self.told, self._story, self._chance
         files, tasks = _open_files(), len(asyncio.all_tasks())
         told.starts += 1
+        if self.rig.ends.is_unplugged:  # no program starts without its bus
+            adapter = self.rig.injection.of("controller")
+            assert adapter is not None
+            self._time.run_until(adapter.end_s)
         self.rig.set_down()
         program = self._program = Program(
             self.rig,
