@@ -39,8 +39,6 @@ class Device:
         """Time at which the newest message that the robot understood arrived there."""
         self.saved: set[str] = set()
         """Ids of the commands whose lesson the robot said to be durable."""
-        self.refused = 0
-        """Messages that were not understood or refused."""
         self._injection, self._time, self._chance = injection, injection.time, chance
         self._numbers = itertools.count(1)
         self._handler: RequestHandler | None = None
@@ -124,7 +122,6 @@ class Device:
         try:
             request = decode_request(path, body)
         except WireError:
-            self.refused += 1
             return
         self.heard_at_s = self._time.now_s()
         task = asyncio.get_running_loop().create_task(self._answered(handler, Sender(TEACHER, b"", number), request))
@@ -136,7 +133,6 @@ class Device:
         fault = self._injection.acting_on("link")
         if fault is not None and (fault.kind == "off" or (fault.kind == "lost" and self._chance.random() < _SHARE)):
             return  # the answer is lost, and the command will come again
-        self.refused += reply.status is not ReplyStatus.DONE
         if isinstance(request, TickRequest | StopRequest):
             self._open.pop(request.command_id.hex(), None)
             if reply.status is ReplyStatus.DONE and reply.body.get("row") is not None:

@@ -9,9 +9,9 @@ import can
 from hal.bus import CONTROL_ID, BusError
 from hal.codec import Codec
 from hal.frame import Frame
-from tests.stories.cable import SOUND, Cable, CableFaults, CableInterface
+from tests.stories.cable import Cable, CableInterface
 from tests.stories.fault import FaultInjection
-from tests.stories.table import Fault, Target
+from tests.stories.table import Fault, Kind, Target
 
 Deliver = Callable[[Frame], None]
 
@@ -133,11 +133,11 @@ class EndFaults:
         self._passed_at_s: dict[tuple[Target, int], float] = {}
         self._next_out_s = 0.0
         self._sent = 0
-        self.replace_cable(SOUND)
+        self.replace_cable()
 
-    def replace_cable(self, faults: CableFaults) -> None:
+    def replace_cable(self) -> None:
         """Take another cable; ends that are opened from now on are on it."""
-        self._cable = Cable(self._time.now_s, faults, self._chance)
+        self._cable = Cable(self._time.now_s)
 
     def open_robots_end(self, _: str) -> CableInterface:
         return self._cable.join(_RobotsEnd(self._cable, self))
@@ -166,12 +166,12 @@ class EndFaults:
     @property
     def is_off(self) -> bool:
         """True while the notebook's CAN controller is off the bus: it hears nothing, and what it sends stays in it."""
-        return self._injection.acting_on("controller") is not None and self._kind("controller") == "bus_off"
+        return self._controller_is("bus_off")
 
     @property
     def is_unplugged(self) -> bool:
         """True while the notebook has no CAN adapter."""
-        return self._kind("controller") == "unplugged" and self._injection.acting_on("controller") is not None
+        return self._controller_is("unplugged")
 
     def begin(self, fault: Fault) -> None:
         """Do what a fault does at its beginning: a controller leaves the bus, a stranger begins to send."""
@@ -198,9 +198,9 @@ class EndFaults:
         self._injection.acted.add(fault)
         self._time.at(now_s + _STRANGER_EVERY_S, lambda: self._send_as_stranger(fault))
 
-    def _kind(self, target: Target) -> str:
-        fault = self._injection.of(target)
-        return "" if fault is None else fault.kind
+    def _controller_is(self, kind: Kind) -> bool:
+        fault = self._injection.acting_on("controller")
+        return fault is not None and fault.kind == kind
 
     def carry_from_board(self, frame: Frame, send: Deliver) -> None:
         """Carry a frame of a board of the robot."""

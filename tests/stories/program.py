@@ -26,7 +26,6 @@ from kurt2rt.runs.recording.run_folder import budget_of
 from kurt2rt.service.assembly import RunSettings, assemble_service
 from kurt2rt.service.post_tick import PostTick, ProgramConsole
 from kurt2rt.service.settings import load_service
-from tests.stories.cable import SOUND, CableFaults
 from tests.stories.can_log import FaultyCanLog
 from tests.stories.clock import FaultyClock
 from tests.stories.device import TEACHER, Device
@@ -67,7 +66,6 @@ class Program:
         *,
         task: TaskSettings = TASK,
         settings: Kurt2Settings = ROBOT,
-        cable: CableFaults = SOUND,
         records: bool = True,
     ) -> None:
         """Open the knowledge in `folder` and start the driver; `number`: of the start."""
@@ -83,7 +81,7 @@ class Program:
         opened = open_for_teaching(path, settings, task)
         opened.journal.close()
         self.knowledge = KnowledgeFile(path, opened, rig.injection, self._wall_clock)
-        witness.begin_program(rig.start_driver(cable))
+        witness.begin_program(rig.start_driver())
         self._clock = FaultyClock(rig.injection, lambda: device.waits)
         self.level = FaultyLevel(rig.injection)
         changed = {"knowledge": str(path), "checkpoint_period_s": _CHECKPOINT_S, "status_period_s": _STATUS_S}

@@ -11,7 +11,6 @@ from hal.tap import Tap
 from hal.watchdog import POLL_S
 from simbridge.simulated_robot import SimulatedKurt2
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
-from tests.stories.cable import SOUND, CableFaults
 from tests.stories.fault import FaultInjection, SimulatedTime
 from tests.stories.faulty_cable import EndFaults
 from tests.stories.motors import FaultyWheels
@@ -54,9 +53,9 @@ class Rig:
         self.time.every(settings.cycle_s, 0.0, self._step)
         self.time.every(POLL_S, chance.uniform(0.0, POLL_S), self._poll_watchdog)
 
-    def start_driver(self, cable: CableFaults = SOUND) -> Kurt2:
+    def start_driver(self) -> Kurt2:
         """Start a new driver on another cable, like a start of its process."""
-        self.ends.replace_cable(cable)
+        self.ends.replace_cable()
         self._robots_bus.reopen()
         self._notebooks_bus = CanBus("cable", self.ends.open_notebooks_end)
         self.robot = Kurt2(self._settings, self._notebooks_bus, watchdog_clock=self.time.now_s)

@@ -10,7 +10,7 @@ from kurt2rt.core.rla.rla import AUTONOMOUS
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.stories.device import Device
-from tests.stories.story import CALM_S, Story, because_of
+from tests.stories.story import CALM_S, Story
 from tests.stories.table import TABLE, Fault, case_of
 from tests.stories.witness import Witness
 
@@ -131,7 +131,7 @@ class Rules:
         reasons = frozenset((*cause, *record.guard_result.reasons)) - _ALWAYS - _LIMITS
         new, self._reasons = reasons - self._reasons, reasons
         for fault in self.begun:
-            new -= because_of(fault.target, fault.kind)
+            new -= TABLE.row(fault.target, fault.kind).reasons
         for point in self._story.points:
             new -= _BECAUSE.get(point, frozenset())
         if new and now_s - self._started_s > _STARTS_S:

@@ -14,7 +14,6 @@ CALM_S = 6.0
 """Time at the end in which nothing fails any more, and the teacher is there."""
 FIRST_S = 1.0
 MOST_FAULTS = 12
-_SPANS_S = (0.2, 3.0)
 _GAP_S = 0.5
 """Least time between two faults of one target."""
 
@@ -22,9 +21,9 @@ _GAP_S = 0.5
 class Teaching(Settings):
     """Teacher of a story: phase, time of a reaction in s, and share of wrong answers."""
 
-    phase: int
-    reaction_s: float
-    error_rate: float
+    phase: int = 2
+    reaction_s: float = 0.5
+    error_rate: float = 0.0
 
 
 class Event(Settings):
@@ -37,11 +36,8 @@ class Event(Settings):
 
     def fault(self) -> Fault:
         """Return the fault, with period and delay of its row."""
-        row = TABLE.cases.get(self.target, {}).get(self.kind)
-        rare = TABLE.stories.get(self.target, {}).get(self.kind)
-        delay_s = row.delay_s if row is not None else 1.0 if rare is None else rare.delay_s
-        period_s = 1.0 if row is None else row.period_s
-        return Fault(self.target, self.kind, self.at_s, self.at_s + self.lasts_s, period_s, delay_s)
+        row = TABLE.row(self.target, self.kind)
+        return Fault(self.target, self.kind, self.at_s, self.at_s + self.lasts_s, row.period_s, row.delay_s)
 
 
 class Story(Settings):
@@ -58,7 +54,7 @@ class Story(Settings):
     """True if it is recorded, and replayed in the end."""
     points: tuple[Point, ...] = ()
     """Points of the program at which something happens now and then."""
-    teaching: Teaching
+    teaching: Teaching = Teaching()
     faults: tuple[Event, ...] = ()
 
     @property
@@ -72,14 +68,6 @@ def all_kinds() -> list[tuple[Target, Kind]]:
     return [(target, kind) for rows in (TABLE.cases, TABLE.stories) for target, kinds in rows.items() for kind in kinds]
 
 
-def because_of(target: Target, kind: Kind) -> frozenset[str]:
-    """Return the reasons for which a robot may stand because of a fault."""
-    row = TABLE.cases.get(target, {}).get(kind)
-    if row is not None:
-        return frozenset((*row.words, *row.also, *filter(None, (row.latches,))))
-    return frozenset(TABLE.stories[target][kind].because)
-
-
 def story_of(seed: int, lasts_s: float) -> Story:
     """Return the story of a seed. It leaves out half of the kinds, so that some of the others meet often."""
     chance = random.Random(f"story {seed}")
@@ -89,9 +77,7 @@ def story_of(seed: int, lasts_s: float) -> Story:
     busy: dict[Target, list[tuple[float, float]]] = {}
     for _ in range(chance.randint(0, MOST_FAULTS)):
         target, kind = chance.choice(kinds)
-        row, rare = TABLE.cases.get(target, {}).get(kind), TABLE.stories.get(target, {}).get(kind)
-        shortest, longest = _SPANS_S if rare is None else rare.lasts_s
-        lasts = chance.uniform(shortest, longest if row is None else row.lasts_s or longest)
+        lasts = chance.uniform(*TABLE.row(target, kind).span_s)
         lasts = round(min(lasts, (lasts_s - CALM_S - FIRST_S) / 2), 3)
         at = round(chance.uniform(FIRST_S, lasts_s - CALM_S - lasts), 3)
         spans = busy.setdefault(target, [])

@@ -1,5 +1,6 @@
 """The table of faults (`table.yaml`): twelve targets, seven kinds, and what the robot must do each time."""
 
+from abc import abstractmethod
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple, Self, get_args
 
@@ -76,6 +77,8 @@ TARGETS: tuple[Target, ...] = get_args(Target)[:12]
 KINDS: tuple[Kind, ...] = get_args(Kind)[:7]
 """Targets and kinds of the drills."""
 
+_SHORTEST_S, _LONGEST_S = 0.2, 3.0
+"""Durations in stories of a fault that has drills."""
 Seconds = Annotated[float, Field(gt=0, le=10)]
 
 
@@ -94,13 +97,28 @@ class Limits(Settings):
     """Longest silence of one of the range sensors' frames in which wheels may turn."""
 
 
-class Row(Settings):
-    """Fault of one case and the required reaction."""
+class AnyRow(Settings):
+    """Fault of any kind, in drills or in stories."""
 
     period_s: Seconds = 1.0
     """slow: interval between two outputs, or time constant. intermittent: span of each failure and recovery."""
     delay_s: Seconds = 1.0
     """Delay, or duration of each blocking call."""
+
+    @property
+    @abstractmethod
+    def reasons(self) -> frozenset[str]:
+        """All guard reasons and decision causes of a robot that may stand because of it."""
+
+    @property
+    @abstractmethod
+    def span_s(self) -> tuple[float, float]:
+        """Shortest and longest duration in a story, in s."""
+
+
+class Row(AnyRow):
+    """Fault of one case and the required reaction."""
+
     lasts_s: Seconds | None = None
     """Duration; None: the schedule's."""
     stop_said_after_s: Seconds | None = None
@@ -126,6 +144,14 @@ class Row(Settings):
     def words(self) -> tuple[str, ...]:
         """Accepted reasons of the standstill (`because`) as a tuple; empty for a robot that drives on."""
         return (self.because,) if isinstance(self.because, str) else self.because
+
+    @property
+    def reasons(self) -> frozenset[str]:
+        return frozenset((*self.words, *self.also, *filter(None, (self.latches,))))
+
+    @property
+    def span_s(self) -> tuple[float, float]:
+        return _SHORTEST_S, self.lasts_s or _LONGEST_S
 
     @model_validator(mode="after")
     def _says_when_it_stands(self) -> Self:
@@ -157,15 +183,21 @@ class Fault(NamedTuple):
         return self.kind != "intermittent" or int((now_s - self.begin_s) / self.period_s) % 2 == 0
 
 
-class StoryRow(Settings):
+class StoryRow(AnyRow):
     """Fault that only stories have."""
 
     lasts_s: tuple[float, float]
     """Shortest and longest duration, in s."""
     because: tuple[str, ...] = ()
     """Guard reasons and decision causes of a robot that may stand because of it."""
-    delay_s: Seconds = 1.0
-    """Delay."""
+
+    @property
+    def reasons(self) -> frozenset[str]:
+        return frozenset(self.because)
+
+    @property
+    def span_s(self) -> tuple[float, float]:
+        return self.lasts_s
 
 
 class Schedule(Settings):
@@ -180,12 +212,16 @@ class Schedule(Settings):
 
 
 class FaultTable(Settings):
-    """Table of twelve targets and seven kinds."""
+    """Table of twelve targets and seven kinds, and of what only stories have."""
 
     schedule: Schedule
     envelope: Limits
     cases: dict[Target, dict[Kind, Row]]
     stories: dict[Target, dict[Kind, StoryRow]]
+
+    def row(self, target: Target, kind: Kind) -> AnyRow:
+        """Return the row of a fault, of drills or of stories alone."""
+        return self.cases.get(target, {}).get(kind) or self.stories[target][kind]
 
 
 class Case(NamedTuple):

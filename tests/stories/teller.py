@@ -20,12 +20,11 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.verify import verify
 from simbridge.worlds.world_loading import load_world
-from tests.stories.cable import SOUND
 from tests.stories.device import Device
 from tests.stories.program import KNOWLEDGE, Program
 from tests.stories.rig import ROBOT, Rig
 from tests.stories.rules import LASTING_S, Rules
-from tests.stories.story import CALM_S, Event, Story, Teaching
+from tests.stories.story import CALM_S, Event, Story
 from tests.stories.table import Fault
 from tests.stories.teacher import StoryTeacher
 from tests.stories.witness import Witness
@@ -120,7 +119,6 @@ class _Teller:
             told.starts,
             chance,
             task=self._task,
-            cable=SOUND,
             records=story.records,
         )
         for fault in self._rules.begun:
@@ -229,9 +227,7 @@ async def _knowledge(task: str) -> Path:
     """Return a knowledge file of a task, taught in a story in which nothing fails."""
     if task not in _known:
         folder = TemporaryDirectory()
-        teaching = Teaching(phase=2, reaction_s=0.5, error_rate=0.0)
-        story = Story(seed=_KNOWN_SEED, lasts_s=_KNOWN_S, task=task, teaching=teaching)
-        told = await tell(story, Path(folder.name))
+        told = await tell(Story(seed=_KNOWN_SEED, lasts_s=_KNOWN_S, task=task), Path(folder.name))
         assert not told.problems, told.problems
         _known[task] = folder, Path(folder.name) / KNOWLEDGE
     return _known[task][1]

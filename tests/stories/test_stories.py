@@ -23,7 +23,6 @@ from tests.stories.teller import tell
 
 SHORT_S = 10.0
 MOST_GROWN_MB = 5.0
-QUIET = Teaching(phase=2, reaction_s=0.5, error_rate=0.0)
 
 
 @pytest.mark.parametrize("tens", range(5))
@@ -70,7 +69,7 @@ def test_a_story_ends_equal_on_another_processor(tmp_path: Path) -> None:
 async def test_half_an_hour_takes_no_memory(tmp_path: Path) -> None:
     pin_mmap_threshold()  # as the robot's program does
     faults = tuple(Event(at_s=60.0 * minute, target="bus_in", kind="garbage", lasts_s=5.0) for minute in range(1, 29))
-    story = Story(seed=2, lasts_s=1800.0, taught=True, teaching=QUIET, faults=faults)
+    story = Story(seed=2, lasts_s=1800.0, taught=True, faults=faults)
     told = await tell(story, tmp_path)
     assert told.problems == []
     assert len(told.resident_mb) == 30
@@ -81,7 +80,7 @@ async def test_a_guard_that_lets_go_is_seen(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.setattr(Guard, "latched", None)
     monkeypatch.setattr(Guard, "emergency_stop", lambda *_: None)
     faults = tuple(Event(at_s=at_s, target="tick", kind="stuck", lasts_s=1.0) for at_s in (3.0, 5.0))
-    story = Story(seed=1, lasts_s=SHORT_S, taught=True, teaching=QUIET, faults=faults)
+    story = Story(seed=1, lasts_s=SHORT_S, taught=True, faults=faults)
     assert (await tell(story, tmp_path)).problems
 
 
@@ -93,7 +92,7 @@ async def test_a_journal_that_says_too_much_is_seen(tmp_path: Path, monkeypatch:
         return append(journal, entries[:-1]) + forgotten
 
     monkeypatch.setattr(Journal, "append", forget)
-    story = Story(seed=1, lasts_s=SHORT_S, teaching=QUIET)
+    story = Story(seed=1, lasts_s=SHORT_S)
     problems = (await tell(story, tmp_path)).problems
     assert any("gone" in each for each in problems), problems
 
@@ -115,5 +114,9 @@ async def test_shrinking_leaves_what_breaks() -> None:
     shortest = await shrunk(story.model_copy(update={"faults": faults}), breaks)
     assert [each.target for each in shortest.faults] == ["encoders", "bus_out"]
     assert all(each.lasts_s < 0.1 for each in shortest.faults)
-    assert (shortest.world, shortest.points, shortest.teaching) == ("a", (), QUIET)
+    assert (shortest.world, shortest.points, shortest.teaching) == (
+        "a",
+        (),
+        Teaching(phase=2, reaction_s=0.5, error_rate=0.0),
+    )
     assert tries < 55

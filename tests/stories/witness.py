@@ -61,13 +61,8 @@ class Witness(RobotProxy):
         self._must_stand = "the program was started"
 
     def watch(self) -> None:
-        """Remember from now on what the robot was told and why, until `rest`."""
-        self.rest()
-        self._watches = True
-
-    def rest(self) -> None:
-        """Remember no more, so that a long run takes no memory."""
-        self._watches, self.latched = False, None
+        """Remember from now on what the robot was told and why, and nothing of before."""
+        self._watches, self.latched = True, None
         del self._arrivals[:-1]
         self._causes.clear()
         self.drove_at_s.clear()
