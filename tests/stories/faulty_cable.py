@@ -226,7 +226,7 @@ class EndFaults:
                 again = (
                     self._codec.message("ENCODER").pack(0, 0)
                     if target == "encoders"
-                    else self._newest.get(key, self._sound[frame.arbitration_id])
+                    else self._newest.get(key) or self._sound[frame.arbitration_id]
                 )
                 deliver(Frame(frame.arbitration_id, again.data))
             case "garbage":
