@@ -76,7 +76,11 @@ class Envelope:
         """Time of the newest frame of each identifier that the robot sends."""
         self._last_put: _SentFrame | None = None
         self._last_arrived: _SentFrame | None = None
-        self._arrived_number = 0
+        self._arrived_number, self._arrived_at_s = 0, -math.inf
+
+    def begin_program(self) -> None:
+        """Expect a driver that knows nothing of what the one before it sent, and begins at rest."""
+        self._last_put = _SentFrame(-math.inf, 0.0, _BRAKE, bumper_pressed=False)
 
     def on_heard(self, frame_id: int, at_s: float) -> None:
         """Note a frame that arrives at the notebook. `at_s`: simulated time in s."""
@@ -141,10 +145,12 @@ class Envelope:
             elif self.clock_is_faulty:
                 elapsed_s = max(elapsed_s, longest_s)
             # A stop may be among frames that were lost on the way: it is free, and what comes after it may turn round.
-            follows = number == self._arrived_number + 1
+            # A robot that heard nothing for so long stands by itself.
+            rested = at_s - self._arrived_at_s >= self._limits.controller_watchdog_s
+            follows = number == self._arrived_number + 1 and not rested
             self._require_smooth(at_s, self._last_arrived.told, put, told, elapsed_s, follows=follows)
         self._last_arrived = put
-        self._arrived_number = number
+        self._arrived_number, self._arrived_at_s = number, at_s
         return told
 
     def _require_slow(self, at_s: float, told: WheelCommand) -> None:

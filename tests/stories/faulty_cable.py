@@ -94,7 +94,8 @@ class _NotebooksEnd(CableInterface):
             raise can.CanOperationError("the adapter is gone")
 
     def hear(self, frame: Frame) -> None:
-        """Receive a frame of another node."""
+        """Receive a frame of another node; no receiver can tell who sent it."""
+        self._faults.on_heard(frame.arbitration_id, self._cable.now_s())
         super().deliver(frame, self._cable.now_s(), own=False)
 
     def tell_error(self, frame_id: int) -> None:

@@ -67,17 +67,16 @@ class _Teller:
     def __init__(self, story: Story, folder: Path) -> None:
         self.told = Told()
         self._story, self._folder = story, folder
-        self._chance = random.Random(f"told {story.seed}")
         self._task: TaskSettings = load_task(story.task)
-        self.rig = Rig(ROBOT, load_world(story.world, ROBOT), self._chance)
+        self.rig = Rig(ROBOT, load_world(story.world, ROBOT), self._chance("rig"))
         self._time = self.rig.time
         self._witness = Witness(self.rig)
-        self._device = Device(self.rig.injection, self._chance)
+        self._device = Device(self.rig.injection, self._chance("device"))
         self._program: Program | None = None
         self._rules = Rules(story, self._witness, self._device)
         self._ends = False
         self._heard_at_s = -math.inf
-        self._rare = random.Random(f"points {story.seed}")
+        self._rare, self._pauses = self._chance("points"), self._chance("pauses")
         for event in story.faults:
             self._plan(event)
 
@@ -85,7 +84,7 @@ class _Teller:
         told, story = self.told, self._story
         while self._time.now_s() < story.lasts_s:
             await self._run_program()
-            self._time.run_until(self._time.now_s() + self._chance.uniform(*_DOWN_S))
+            self._time.run_until(self._time.now_s() + self._pauses.uniform(*_DOWN_S))
         self._rules.on_end(self._folder / KNOWLEDGE)
         told.problems += self._rules.problems + self._witness.complaints
         told.acted = {str(each) for each in self.rig.injection.acted}
@@ -93,6 +92,10 @@ class _Teller:
         digest.update("".join(sorted(self._device.saved)).encode())
         told.hash = digest.hexdigest()
         return told
+
+    def _chance(self, part: str) -> random.Random:
+        """Return the chance of a part, so that what one part draws changes nothing for the others."""
+        return random.Random(f"{part} {self._story.seed}")
 
     def _happens(self, point: Point) -> bool:
         """Return whether something happens at a point of the program now; none does at the end."""
@@ -103,7 +106,7 @@ class _Teller:
         return happens
 
     async def _run_program(self) -> None:
-        told, story, chance = self.told, self._story, self._chance
+        told, story = self.told, self._story
         files, tasks = _open_files(), len(asyncio.all_tasks())
         told.starts += 1
         if self.rig.ends.is_unplugged:  # no program starts without its bus
@@ -117,7 +120,7 @@ class _Teller:
             self._device,
             self._folder,
             told.starts,
-            chance,
+            self._chance(f"program {told.starts}"),
             task=self._task,
             records=story.records,
         )
@@ -126,6 +129,7 @@ class _Teller:
                 program.begin_fault(fault)  # it was under way before this start
         self._ends = False
         self._rules.on_start(self._time.now_s())
+        chance = self._chance(f"teacher {told.starts}")
         teacher = StoryTeacher(program, self._task, story.teaching, chance)
         points.happens = self._happens
         try:

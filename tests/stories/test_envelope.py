@@ -119,6 +119,14 @@ def test_envelope_pressed_bumper_allows_reversal_but_no_jump() -> None:
     assert any("left jumps from 0.00 to 0.09" in each for each in violations)
 
 
+def test_a_new_driver_begins_at_rest_whatever_the_last_one_sent() -> None:
+    """The last one was killed, and the robot braked by itself."""
+    for first, complaints in ((3, 0), (5, 2)):  # of both sides
+        drive = Drive().to(30)
+        drive.envelope.begin_program()
+        assert len(drive.on_sent(set_point(first), after_s=0.5).violations) == complaints
+
+
 def test_envelope_faulty_clock_frames_are_judged_one_by_one() -> None:
     drive = Drive()
     drive.envelope.clock_is_faulty = True

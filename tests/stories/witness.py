@@ -59,6 +59,7 @@ class Witness(RobotProxy):
         """Observe the driver of a new program, which must stand until it is resumed."""
         self._robot = robot
         self._must_stand = "the program was started"
+        self.envelope.begin_program()
 
     def watch(self) -> None:
         """Remember from now on what the robot was told and why, and nothing of before."""
