@@ -74,11 +74,11 @@ class LinkedRobot(GuardedRobot):
 
     def _receive(self, now_s: float, arrivals: Arrivals) -> None:
         reports: tuple[Report, ...] = ()
+        self._try_to_reopen(now_s)
         try:
             reports = tuple(self._link.receive(now_s))
         except BusError as error:
             self._lose_link(error, now_s)
-        self._try_to_reopen(now_s)
         self._frames += len(reports)
         # Set points may change between two reports of the wheels, so the wheels respond in each tick.
         arrivals.responded_s = self._cycle_s
@@ -125,6 +125,7 @@ class LinkedRobot(GuardedRobot):
 
     def _reopen_link(self) -> None:
         self._link.reopen()
+        self._forget_ages()  # it drives by what comes over this link: one that is not yet greeted takes no set point
 
     def _close_link(self) -> None:
         self._link.close()
