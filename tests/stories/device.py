@@ -30,8 +30,9 @@ Message = tuple[int, str, bytes]
 class Device:
     """Device of one teacher, who sees each tick's state at once.
 
-    Messages enter behind OSCORE, which would refuse copies, so that the rules after it must. off: none arrives. lost:
-    some do not. delayed: late. doubled: some twice. replayed: some again much later. garbage: random bytes.
+    Messages enter behind OSCORE, which would refuse copies, so that the rules after it must. off: none arrives.
+    page_dies: nor does the device ask again for what was open. lost: some do not. delayed: late. doubled: some twice.
+    replayed: some again much later. garbage: random bytes.
     """
 
     def __init__(self, injection: FaultInjection, chance: random.Random) -> None:
@@ -51,6 +52,10 @@ class Device:
     def connect(self, handler: RequestHandler, boot: bytes) -> None:
         """Talk to another start of the program."""
         self._handler, self._boot, self._tick = handler, boot, 0
+        self.forget()
+
+    def forget(self) -> None:
+        """Forget the commands without an answer, as a page does that dies."""
         self._open.clear()
 
     def disconnect(self) -> None:
@@ -98,7 +103,7 @@ class Device:
         fault, now_s, chance = self._injection.acting_on("link"), self._time.now_s(), self._chance
         chosen = fault is not None and chance.random() < _SHARE
         match None if fault is None else fault.kind:
-            case "off":
+            case "off" | "page_dies":
                 return
             case "lost" if chosen:
                 return
@@ -131,7 +136,8 @@ class Device:
     async def _answered(self, handler: RequestHandler, sender: Sender, request: Request) -> None:
         reply: Reply = await handler.answer(sender, request)
         fault = self._injection.acting_on("link")
-        if fault is not None and (fault.kind == "off" or (fault.kind == "lost" and self._chance.random() < _SHARE)):
+        kind = None if fault is None else fault.kind
+        if kind in ("off", "page_dies") or (kind == "lost" and self._chance.random() < _SHARE):
             return  # the answer is lost, and the command will come again
         if isinstance(request, TickRequest | StopRequest):
             self._open.pop(request.command_id.hex(), None)

@@ -173,6 +173,8 @@ class Program:
                 self.hand = Hand(self._channel.handler, self._boot, injection, self._chance, press_id)
             case "program", kind if kind in KILLS:
                 self.knowledge.journal.dies = kind
+            case "link", "page_dies":
+                self._device.forget()
             case "link", "keys_renewed":
                 self.runtime.inbox.put(PairingRenewed(TEACHER))
 

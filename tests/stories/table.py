@@ -54,6 +54,7 @@ Kind = Literal[
     "restart",
     "telemetry",
     "keys_renewed",
+    "page_dies",
     "killed",
     "killed_before_commit",
     "killed_after_commit",
