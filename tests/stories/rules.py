@@ -95,11 +95,11 @@ class Rules:
 
     def on_fault_over(self, fault: Fault) -> None:
         """Complain unless the robot stood as the table demands, where nothing else failed and it drove before."""
-        row = TABLE.cases.get(fault.target, {}).get(fault.kind)
+        witness, row = self._witness, TABLE.row(fault.target, fault.kind)
+        within_s = row.stands_within_s
         # A disk stops it only by a lesson, a hand only one that drives.
-        if row is None or row.leads_to != "stands" or fault.target in ("disk", "teacher_link"):
+        if within_s is None or fault.target in ("disk", "teacher_link"):
             return
-        witness, within_s = self._witness, row.latches_within_s or row.within_s or 0.0
         if row.latches == GuardReason.WHEELS_DISOBEY:
             within_s *= _MANOEUVRE  # until it is told to change its speed
         from_s, until_s = fault.begin_s - _DROVE_S, fault.begin_s + within_s

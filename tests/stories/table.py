@@ -105,11 +105,19 @@ class AnyRow(Settings):
     """slow: interval between two outputs, or time constant. intermittent: span of each failure and recovery."""
     delay_s: Seconds = 1.0
     """Delay, or duration of each blocking call."""
+    latches: str | None = None
+    """Guard reason of the final latch."""
+    latches_within_s: Seconds | None = None
 
     @property
     @abstractmethod
     def reasons(self) -> frozenset[str]:
         """All guard reasons and decision causes of a robot that may stand because of it."""
+
+    @property
+    @abstractmethod
+    def stands_within_s(self) -> float | None:
+        """Time after which a robot that drove stands until the end, for good if it latches; None if it need not."""
 
     @property
     @abstractmethod
@@ -131,9 +139,6 @@ class Row(AnyRow):
     """Further reasons of a robot whose other parts fail, too, or whose fault is longer or shorter than in a drill."""
     within_s: Seconds | None = None
     """Limit from the fault to the (first) standstill on the robot's end of the bus."""
-    latches: str | None = None
-    """Guard reason of the final latch."""
-    latches_within_s: Seconds | None = None
     ends_by: EndsBy
     counts: str | None = None
     """Counter that must be positive."""
@@ -149,6 +154,10 @@ class Row(AnyRow):
     @property
     def reasons(self) -> frozenset[str]:
         return frozenset((*self.words, *self.also, *filter(None, (self.latches,))))
+
+    @property
+    def stands_within_s(self) -> float | None:
+        return (self.latches_within_s or self.within_s) if self.leads_to == "stands" else None
 
     @property
     def span_s(self) -> tuple[float, float]:
@@ -195,6 +204,10 @@ class StoryRow(AnyRow):
     @property
     def reasons(self) -> frozenset[str]:
         return frozenset(self.because)
+
+    @property
+    def stands_within_s(self) -> float | None:
+        return self.latches_within_s
 
     @property
     def span_s(self) -> tuple[float, float]:

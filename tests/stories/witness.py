@@ -95,7 +95,7 @@ class Witness(RobotProxy):
         if moves and self._must_stand and cause is not DecisionCause.TEACHER:
             self._complain(f"drives though {self._must_stand}, without a resume")
         if record.guard_result.latched:
-            self._must_stand = ", ".join(record.guard_result.reasons) or "stopped for good"
+            self._note_latch(now_s, ", ".join(record.guard_result.reasons) or "stopped for good")
         if timer.ticks + 1 + timer.missed_ticks != record.tick:
             self._complain(f"tick {record.tick}: {timer.ticks + 1} and {timer.missed_ticks} missed are not as many")
         late_s = record.now_s - begun_s - record.tick * period_s
@@ -140,10 +140,15 @@ class Witness(RobotProxy):
         now_s, robot = self._time.now_s(), self._rig.robot
         self.digest.update(payload + round(now_s * 1e6).to_bytes(8, "big"))
         latched = None if robot is None else robot.health.latched
-        if latched is not None and self._watches:
-            self.latched = self.latched or (now_s, latched)
-            self._causes.append((now_s, (latched,)))
+        if latched is not None:
+            self._note_latch(now_s, latched)
         self.envelope.on_sent(number, now_s, payload, now_s - self._sensed_at_s, latched=latched is not None)
+
+    def _note_latch(self, now_s: float, reason: str) -> None:
+        self._must_stand = reason
+        if self._watches:
+            self.latched = self.latched or (now_s, reason)
+            self._causes.append((now_s, (reason,)))
 
     def _look_at_the_wheels(self) -> None:
         """Complain of wheels that turn though nothing told them to for long; a broken motor may."""
