@@ -5,7 +5,7 @@ from pathlib import Path
 from hal.guard_reason import GuardReason
 from hal.points import Point
 from hal.robot import STANDSTILL
-from kurt2rt.core.decision.decision import ASKING
+from kurt2rt.core.decision.decision import ASKING, StandReason
 from kurt2rt.core.rla.rla import AUTONOMOUS
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
@@ -40,6 +40,8 @@ _BECAUSE: dict[Point, frozenset[str]] = {
     "a durable commit fails": frozenset({"unsaved"}),
 }
 """Reasons to stand because of what happens at a point."""
+_SPEAKS_S = 0.5
+"""Time for which the guard may hold the robot before its teacher is told why."""
 _LIMITS = frozenset({"speed limit", "slew limit"})
 
 
@@ -55,10 +57,11 @@ class Rules:
         self._started_s = 0.0
         self._works = False
         self._reasons: frozenset[str] = frozenset()
+        self._spoke_at_s = 0.0
 
     def on_start(self, now_s: float) -> None:
         """Note a start of the program."""
-        self._started_s = now_s
+        self._started_s = self._spoke_at_s = now_s
 
     def on_error(self, error: str) -> None:
         """Complain of an error that ended the program, unless a clock or a tick failed for good."""
@@ -86,6 +89,7 @@ class Rules:
         if moves and now_s - unsaved_s > _UNSAVED_S:
             self.problems.append(f"at {now_s:.2f} s: it drives though lessons cannot be saved since {unsaved_s:.2f} s")
         self._explain(record, now_s)
+        self._require_words(record, now_s)
 
     def on_fault(self, fault: Fault) -> None:
         """Note the beginning of a fault."""
@@ -124,6 +128,17 @@ class Rules:
             self.problems.append(f"{len(lost)} lessons that a teacher was told to be durable are gone")
         if len(set(stored)) != len(stored):
             self.problems.append("a lesson stands twice in the knowledge")
+
+    def _require_words(self, record: TickRecord, now_s: float) -> None:
+        """Complain of a robot that is held back and tells its teacher that it drives, or that it needs no resume."""
+        wants = record.decision.driving and record.decision.wheel_speeds != STANDSTILL
+        is_held = wants and record.guard_result.wheel_speeds == STANDSTILL
+        if not is_held or record.standing.reason is not StandReason.DRIVES:
+            self._spoke_at_s = now_s
+        if now_s - self._spoke_at_s > _SPEAKS_S:
+            self.problems.append(f"at {now_s:.2f} s: it says that it drives, held by {record.guard_result.reasons}")
+        if record.guard_result.latched and not record.standing.needs_resume:
+            self.problems.append(f"at {now_s:.2f} s: it is stopped for good and says that it needs no resume")
 
     def _explain(self, record: TickRecord, now_s: float) -> None:
         """Complain of a new reason to stand that no fault gives; one that holds on was explained as it came."""
