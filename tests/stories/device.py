@@ -12,6 +12,7 @@ from kurt2rt.channel.server.reply import Reply, ReplyStatus
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender
 from kurt2rt.core.message_fields import WireError
 from kurt2rt.core.teaching.commands import Command, Stream
+from tests.stories.channel_judge import ChannelJudge
 from tests.stories.fault import FaultInjection
 
 TEACHER = "eve"
@@ -40,6 +41,8 @@ class Device:
         """Time at which the newest message that the robot understood arrived there."""
         self.saved: set[str] = set()
         """Ids of the commands whose lesson the robot said to be durable."""
+        self.judge = ChannelJudge()
+        """Judge of what the robot takes of this and other devices."""
         self._injection, self._time, self._chance = injection, injection.time, chance
         self._numbers = itertools.count(1)
         self._handler: RequestHandler | None = None
@@ -52,6 +55,7 @@ class Device:
     def connect(self, handler: RequestHandler, boot: bytes) -> None:
         """Talk to another start of the program."""
         self._handler, self._boot, self._tick = handler, boot, 0
+        self.judge.begin_program(boot)
         self.forget()
 
     def forget(self) -> None:
@@ -76,6 +80,7 @@ class Device:
     def see(self, tick: int) -> None:
         """Let the teacher see the state of this tick."""
         self._tick = tick
+        self.judge.on_tick(tick)
 
     def send(self, command: Command) -> None:
         """Send a message of a stream once, a command until it is answered."""
@@ -131,10 +136,17 @@ class Device:
         self.heard_at_s = self._time.now_s()
         task = asyncio.get_running_loop().create_task(self._answered(handler, Sender(TEACHER, b"", number), request))
         self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
+        task.add_done_callback(self._on_answered)
+
+    def _on_answered(self, task: asyncio.Task[None]) -> None:
+        self._tasks.discard(task)
+        if not task.cancelled() and (error := task.exception()) is not None:
+            self.judge.problems.append(f"an answer ended by {error!r}")
 
     async def _answered(self, handler: RequestHandler, sender: Sender, request: Request) -> None:
+        tick = handler.tick
         reply: Reply = await handler.answer(sender, request)
+        self.judge.on_reply(sender, request, tick, reply)
         fault = self._injection.acting_on("link")
         kind = None if fault is None else fault.kind
         if kind in ("off", "page_dies") or (kind == "lost" and self._chance.random() < _SHARE):

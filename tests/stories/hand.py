@@ -13,6 +13,7 @@ from kurt2rt.core.message_fields import WireError
 from kurt2rt.core.teaching.commands import Drive
 from kurt2rt.core.teaching.message_fields import HIGHEST_SPEED_M_S
 from kurt2rt.teacher.client.manual_drive import BEAT_S
+from tests.stories.channel_judge import ChannelJudge
 from tests.stories.fault import FaultInjection
 
 DRIVER = "ann"
@@ -30,7 +31,13 @@ class Hand:
     """
 
     def __init__(
-        self, handler: RequestHandler, boot: bytes, injection: FaultInjection, chance: random.Random, press_id: int
+        self,
+        handler: RequestHandler,
+        boot: bytes,
+        injection: FaultInjection,
+        chance: random.Random,
+        press_id: int,
+        judge: ChannelJudge,
     ) -> None:
         """Begin to press; `press_id` is larger than that of any press before. `boot`: id of the program's start."""
         self.heard_at_s = -math.inf
@@ -39,7 +46,8 @@ class Hand:
         """Messages that were not understood or refused."""
         self._press_id = press_id
         self._injection, self._time, self._chance = injection, injection.time, chance
-        self._handler, self._boot = handler, boot
+        self._handler: RequestHandler | None = handler
+        self._boot, self._judge = boot, judge
         self._number = 0
         self._newest = (0, b"")
         self._passed_at_s = 0.0
@@ -52,6 +60,10 @@ class Hand:
     def let_go(self) -> None:
         """Send no more messages."""
         self._is_over = True
+
+    def disconnect(self) -> None:
+        """End with the program that it drives: nothing arrives there any more."""
+        self._is_over, self._handler = True, None
 
     def _beat(self) -> None:
         """Send the message that is due through the fault of the link."""
@@ -85,20 +97,28 @@ class Hand:
                     self._arrive(*message)
             case "delayed":
                 self._time.at(now_s + fault.delay_s, lambda: self._arrive(*message))
+            case "reordered":
+                self._time.at(now_s + self._chance.uniform(0.0, fault.delay_s), lambda: self._arrive(*message))
 
     def _message(self, left_m_s: float, right_m_s: float) -> bytes:
+        assert self._handler is not None, "a hand without a program sends nothing"
         return encode_request(
             StreamRequest(self._boot, Drive("", self._handler.tick, self._press_id, left_m_s, right_m_s))
         )
 
     def _arrive(self, number: int, payload: bytes) -> None:
+        handler = self._handler
+        if handler is None:
+            return
         try:
             request = decode_request(Drive.path, payload)
         except WireError:
             self.refused += 1
             return
         self.heard_at_s = self._time.now_s()
-        reply = _at_once(self._handler.answer(Sender(DRIVER, b"", number), request))
+        sender, tick = Sender(DRIVER, b"", number), handler.tick
+        reply = _at_once(handler.answer(sender, request))
+        self._judge.on_reply(sender, request, tick, reply)
         self.refused += reply.status is not ReplyStatus.DONE
 
 

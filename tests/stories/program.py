@@ -142,6 +142,8 @@ class Program:
     def close(self) -> list[str]:
         """End driver and files; return complaints about lost lessons and ticks. Raises KnowledgeError."""
         self._device.disconnect()
+        if self.hand is not None:
+            self.hand.disconnect()
         self._channel.handler.close()
         self._rig.end_driver(killed=self.killed)
         disk = self._rig.injection.of("disk")
@@ -170,7 +172,9 @@ class Program:
             case "teacher_link", _:
                 self.put(Take(self.next_id(), DRIVER))
                 press_id = self.runtime.timer.ticks + 1
-                self.hand = Hand(self._channel.handler, self._boot, injection, self._chance, press_id)
+                self.hand = Hand(
+                    self._channel.handler, self._boot, injection, self._chance, press_id, self._device.judge
+                )
             case "program", kind if kind in KILLS:
                 self.knowledge.journal.dies = kind
             case "link", "page_dies":

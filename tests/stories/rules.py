@@ -26,6 +26,8 @@ _SHOWS_M_S = 0.2
 _ROUNDING_S = 1e-6
 _SILENT_S = 0.35
 """Time after the teachers' last message in which the robot may drive, before phase 5."""
+_PICTURE_TICKS = 37
+"""Ticks since the newest state that its teachers saw in which the robot may drive, before phase 5."""
 _UNSAVED_S = 0.05
 """Time after a disk's refusal in which the robot may drive: some ticks."""
 _MANOEUVRE = 4.0
@@ -86,6 +88,8 @@ class Rules:
         if moves and story.teaching.phase < AUTONOMOUS and now_s - heard_at_s > _SILENT_S:
             silent_s = now_s - heard_at_s
             self.problems.append(f"at {now_s:.2f} s: it drives {silent_s:.2f} s after its teachers' last message")
+        if moves and story.teaching.phase < AUTONOMOUS and self._device.judge.picture_ticks > _PICTURE_TICKS:
+            self.problems.append(f"at {now_s:.2f} s: it drives, unseen for {_PICTURE_TICKS} ticks")
         if moves and now_s - unsaved_s > _UNSAVED_S:
             self.problems.append(f"at {now_s:.2f} s: it drives though lessons cannot be saved since {unsaved_s:.2f} s")
         self._explain(record, now_s)
@@ -112,7 +116,9 @@ class Rules:
             return
         if witness.slowest_m_s(from_s, until_s) < _SHOWS_M_S:
             return
-        if not witness.standstills(fault.begin_s, fault.end_s):
+        # If it is not reached, the robot's own watchdog makes it stand.
+        is_long = fault.end_s - fault.begin_s >= TABLE.envelope.controller_watchdog_s
+        if is_long and not witness.standstills(fault.begin_s, fault.end_s):
             self.problems.append(f"{fault}: it did not stand")
         latched = witness.latched
         if row.latches is not None and (latched is None or latched[0] > until_s + _ROUNDING_S):
@@ -120,6 +126,7 @@ class Rules:
 
     def on_end(self, knowledge: Path) -> None:
         """Judge the end of the story: that it works again, and that `knowledge` has every lesson once."""
+        self.problems += self._device.judge.problems
         if not self._works:
             self.problems.append(f"it neither drove nor asked within {WORKS_AGAIN_S:g} s after the last fault")
         with Journal.read_only(knowledge) as journal:

@@ -3,6 +3,7 @@
 import random
 from collections.abc import Iterator
 from contextlib import closing
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,9 @@ from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core import tick
 from kurt2rt.core.decision.decision import Decision, DecisionCause, Level
 from kurt2rt.core.perception.perception import Situation
-from tests.stories.device import Device
+from kurt2rt.core.teaching.authority import ControlAuthority, StopRecord
+from kurt2rt.core.teaching.commands import Drive, Resume, Stop
+from tests.stories.device import TEACHER, Device
 from tests.stories.program import Program
 from tests.stories.rig import CORRIDOR, ROBOT, Rig
 from tests.stories.table import case_of
@@ -70,6 +73,19 @@ async def test_untold_program_with_a_careless_layer_stands_or_is_seen(
     else:
         assert len(witness.complaints) > 80
         assert "drives though the program was started, without a resume" in witness.complaints[0]
+
+
+async def test_a_channel_that_forgets_a_stop_is_seen(
+    rig: Rig, witness: Witness, program: Program, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(StopRecord, "refusal_since", lambda *_: None)
+    monkeypatch.setattr(ControlAuthority, "is_press_over", lambda *_: False)
+    drive = Drive(TEACHER, 0, press_id=1, left_m_s=0.1, right_m_s=0.1)
+    for at_s, command in ((0.1, drive), (0.2, Stop("1", TEACHER)), (0.3, drive), (0.4, Resume("2", TEACHER, 15))):
+        rig.time.at(at_s, partial(program.put, command))
+    await run(program, rig, 0.5)
+    assert "drives though eve said stop, without a resume" in witness.complaints[0]
+    assert "a stop is lifted by a teacher who had not seen it" in witness.complaints[-1]
 
 
 async def test_a_tick_that_is_not_accounted_for_is_seen(rig: Rig, witness: Witness, program: Program) -> None:

@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 from hal.robot import STANDSTILL, Robot, SensorReadings
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.teaching.commands import Resume, Stop
+from kurt2rt.core.outcome import ResultCode
+from kurt2rt.core.teaching.commands import Drive, Resume, Stop
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.faulty_sensor import RobotProxy
 from kurt2rt.platform.tick_timer import TickTimer
@@ -13,6 +14,7 @@ from tests.stories.envelope import Envelope, WheelCommand
 from tests.stories.rig import Rig
 from tests.stories.table import TABLE
 
+REPEATED = ResultCode.REPEATED
 _ROUNDING_S = 1e-6
 _LOOKS_EVERY_S = 0.05
 _CLOCK_SETTLES_S = 0.1
@@ -48,6 +50,8 @@ class Witness(RobotProxy):
         self._watches = False
         self._sensed_at_s = self._clock_faulty_until_s = 0.0
         self._must_stand = ""
+        self._stop_tick, self._newest_press, self._ended_press = -1, -1, -2
+        """Tick of the newest stop of a teacher, and ids of hands' presses: the newest, and the newest one before it."""
         self.digest = hashlib.sha256()
         """Of all frames that were sent, and of their times."""
         self._moved_at_s = 0.0
@@ -59,6 +63,7 @@ class Witness(RobotProxy):
         """Observe the driver of a new program, which must stand until it is resumed."""
         self._robot = robot
         self._must_stand = "the program was started"
+        self._stop_tick, self._newest_press, self._ended_press = -1, -1, -2
         self.envelope.begin_program()
 
     def watch(self) -> None:
@@ -84,15 +89,22 @@ class Witness(RobotProxy):
         moves = record.guard_result.wheel_speeds != STANDSTILL
         if moves and not record.decision.driving:
             self._complain(f"drives though {cause}")
-        accepted = {result.command_id for result in record.results if result.accepted}
+        done = {each.command_id for each in record.results if each.accepted and each.outcome.code is not REPEATED}
         for each in record.commands:
-            if isinstance(each, Resume) and each.command_id in accepted:
+            if isinstance(each, Resume) and each.command_id in done:
                 self._must_stand = ""
                 self.resumes += 1
+                if each.seen_tick is not None and each.seen_tick < self._stop_tick:
+                    self._complain("a stop is lifted by a teacher who had not seen it")
             elif isinstance(each, Stop) and each.press_id is None:
                 self._must_stand = f"{each.teacher} said stop"
+                self._ended_press = self._newest_press
+                self._stop_tick = record.tick if each.command_id in done else self._stop_tick
+            elif isinstance(each, Drive):
+                self._newest_press = max(self._newest_press, each.press_id)
         # A teacher's hand tells it to drive, until it lets go.
-        if moves and self._must_stand and cause is not DecisionCause.TEACHER:
+        by_hand = cause is DecisionCause.TEACHER and self._newest_press > self._ended_press
+        if moves and self._must_stand and not by_hand:
             self._complain(f"drives though {self._must_stand}, without a resume")
         if record.guard_result.latched:
             self._note_latch(now_s, ", ".join(record.guard_result.reasons) or "stopped for good")
