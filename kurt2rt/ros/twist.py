@@ -34,20 +34,33 @@ class Twists:
     def of_wheels(self, speeds: WheelSpeeds) -> PlaneTwist:
         """Return the twist of finite set points in m/s, in whole steps; no side is quicker than it was told to be."""
         settings, (left_m_s, right_m_s) = self._settings, speeds
-        most_rad_s = settings.maximum_rad_s
+        most_rad_s, step_m_s = settings.maximum_rad_s, settings.angular_step_rad_s * self._half_track_m
         turn_rad_s = max(-most_rad_s, min(most_rad_s, (right_m_s - left_m_s) / 2 / self._half_track_m))
         forward = _whole_steps((left_m_s + right_m_s) / 2, settings.linear_step_m_s)
         turn = _whole_steps(turn_rad_s, settings.angular_step_rad_s)
         # A turn that is cut off makes the inner side quicker, so the robot may have to drive a step slower.
         for less_forward, less_turn in ((0, 0), (1, 0), (0, 1), (1, 1)):
-            twist = PlaneTwist(
-                _reduced(forward, less_forward) * settings.linear_step_m_s,
-                _reduced(turn, less_turn) * settings.angular_step_rad_s,
-            )
-            sides = zip(self.to_wheels(twist), speeds, strict=True)
-            if all(abs(slowed) <= abs(told) + _ROUNDING_M_S for slowed, told in sides):
-                return twist
-        return PlaneTwist(0.0, 0.0)
+            steps = _reduced(forward, less_forward), _reduced(turn, less_turn)
+            if self._loss_m_s(*steps, speeds) < math.inf:
+                return self._twist(*steps)
+        # Of sides that turn against each other, a speed that is cut off makes one quicker, by many steps of the turn.
+        ahead_m_s, behind_m_s = map(abs, speeds if turn < 0 else speeds[::-1])
+        nearest = [(0, 0)]
+        for steps in (forward - 1, forward, forward + 1):
+            forward_m_s = steps * settings.linear_step_m_s
+            most = _whole_steps(min(ahead_m_s - forward_m_s, behind_m_s + forward_m_s), step_m_s)
+            nearest.append((steps, max(-most, min(most, turn))))
+        return self._twist(*min(nearest, key=lambda steps: self._loss_m_s(*steps, speeds)))
+
+    def _twist(self, forward: int, turn: int) -> PlaneTwist:
+        return PlaneTwist(forward * self._settings.linear_step_m_s, turn * self._settings.angular_step_rad_s)
+
+    def _loss_m_s(self, forward: int, turn: int, speeds: WheelSpeeds) -> float:
+        """Return by how much both sides are slower than told with a twist in steps; infinite if one is quicker."""
+        sides = list(zip(self.to_wheels(self._twist(forward, turn)), speeds, strict=True))
+        if any(abs(slowed) > abs(told) + _ROUNDING_M_S for slowed, told in sides):
+            return math.inf
+        return sum(abs(told - slowed) for slowed, told in sides)
 
     def to_wheels(self, twist: PlaneTwist) -> WheelSpeeds:
         """Return the wheel speeds of a twist in m/s."""

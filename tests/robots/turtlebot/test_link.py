@@ -138,6 +138,14 @@ def test_applied_speeds_are_never_above_the_given_ones(wire: Wire) -> None:
         applied = wire.link.applied(WheelSpeeds(left_m_s, right_m_s))
         assert abs(applied.left_m_s) <= abs(left_m_s) + 1e-4
         assert abs(applied.right_m_s) <= abs(right_m_s) + 1e-4
+        assert abs(applied.left_m_s - left_m_s) + abs(applied.right_m_s - right_m_s) <= 0.04
+
+
+def test_side_that_turns_round_does_not_brake_the_other(wire: Wire) -> None:
+    """A spin begins with one side that is quicker than the other; the base stuttered between the brake and 0.08 m/s."""
+    for right_mm_s in range(0, -80, -1):
+        applied = wire.link.applied(WheelSpeeds(0.08, right_mm_s / 1000))
+        assert applied.left_m_s >= 0.06
 
 
 def test_drive_silent_scans_alone_stop_the_robot(monkeypatch: pytest.MonkeyPatch) -> None:
