@@ -115,6 +115,24 @@ def test_robot_lost_line_latches_and_is_opened_again() -> None:
     assert rig.simulated.wheel_speeds == pytest.approx(FORWARD, abs=0.001)
 
 
+def test_robot_does_not_jump_after_its_line_was_opened_again() -> None:
+    """A resume right after the opening drove by the lines of before, while the line still waited for the greeting."""
+    rig = MemoryRig()
+    rig.run(1.0)
+    rig.line.port.lost = True
+    rig.tick()
+    rig.line.port.lost = False
+    rig.run(0.98)
+    before_m_s = 0.0
+    for _ in range(50):
+        rig.robot.release()
+        rig.tick()
+        told_m_s = rig.simulated.controller.commands.left_m_s
+        assert told_m_s - before_m_s <= 2 * SETTINGS.guard.acceleration_m_s2 * SETTINGS.cycle_s
+        before_m_s = told_m_s
+    assert before_m_s == FORWARD.left_m_s
+
+
 def test_robot_silent_line_makes_its_senses_stale() -> None:
     rig = MemoryRig()
     rig.run(1.0)
