@@ -95,9 +95,7 @@ class _Drill:
         return outcome._replace(problems=(*self._witness.complaints, *problems))
 
     def _started(self, number: int) -> Program:
-        program = Program(
-            self.rig, self._witness, self._device, self._folder, number, self._chance, settings=self._settings
-        )
+        program = Program(self.rig, self._witness, self._device, self._folder, number, self._chance)
         program.put(Resume(program.next_id(), TEACHER))
         return program
 

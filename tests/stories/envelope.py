@@ -1,51 +1,19 @@
-"""Motion envelope judged from CAN frames alone, independent of the guard.
+"""Motion envelope judged from messages alone, independent of the guard.
 
 It shares no code with the guard or the guard's codec, so that an error of one cannot hide an error of the other.
 """
 
 import math
-import struct
 from typing import NamedTuple
 
 from tests.stories.table import Limits
+from tests.stories.wire import BRAKE, KURT2, WheelCommand, Wire
 
-_SPEED_CM = 2
-_SET_POINT = struct.Struct(">HhhH")
-_BRAKE_PAYLOAD = bytes((0, 0, 0x01, 0x03, 0xFF, 0x01, 0x03, 0xFF))
-"""RAW, both sides: brake, no drive (docs/the-robot.md#control-modes)."""
-_RANGE_FRAMES = frozenset((5, 6, 7, 21, 22))
-"""Identifiers of the frames that hold the 18 range sensors (docs/the-robot.md#messages)."""
 _FRONT, _REAR = 0b000111, 0b111000
 """Bits of the bumpers at both ends."""
 _ROUNDING = 1e-6
 _MOST_UNDER_WAY = 2048
 """Frames in transit that are remembered; an older frame counts as lost."""
-
-
-class WheelCommand(NamedTuple):
-    """Command of a CONTROL frame to the wheels."""
-
-    left_m_s: float
-    right_m_s: float
-    brake: bool
-
-    @property
-    def standing(self) -> bool:
-        """Return whether both sides are commanded to stand."""
-        return self.left_m_s == 0.0 and self.right_m_s == 0.0
-
-
-_BRAKE = WheelCommand(0.0, 0.0, brake=True)
-
-
-def decode_command(payload: bytes) -> WheelCommand | None:
-    """Return the command of a payload; None if the robot or this guard does not use it."""
-    if payload == _BRAKE_PAYLOAD:
-        return _BRAKE
-    if len(payload) != _SET_POINT.size:
-        return None
-    mode, left_cm_s, right_cm_s, _ = _SET_POINT.unpack(payload)
-    return WheelCommand(left_cm_s / 100.0, right_cm_s / 100.0, brake=False) if mode == _SPEED_CM else None
 
 
 class _SentFrame(NamedTuple):
@@ -58,7 +26,7 @@ class _SentFrame(NamedTuple):
 class Envelope:
     """Check of all frames of one driver; `violations` holds the frames beyond the limits."""
 
-    def __init__(self, limits: Limits) -> None:
+    def __init__(self, limits: Limits, wire: Wire = KURT2) -> None:
         self.violations: list[str] = []
         self.frames = 0
         """Frames handed to the bus."""
@@ -70,7 +38,7 @@ class Envelope:
         """True while the driver's clock jumps: each frame may change speed by the longest step."""
         self.bumpers = 0
         """Bits of the bumpers that the driver reads as pressed: blocked wheels stop and may reverse at once."""
-        self._limits = limits
+        self._limits, self._wire = limits, wire
         self._in_transit: dict[int, _SentFrame] = {}
         self._heard_at_s: dict[int, float] = {}
         """Time of the newest frame of each identifier that the robot sends."""
@@ -80,11 +48,11 @@ class Envelope:
 
     def begin_program(self) -> None:
         """Expect a driver that knows nothing of what the one before it sent, and begins at rest."""
-        self._last_put = _SentFrame(-math.inf, 0.0, _BRAKE, bumper_pressed=False)
+        self._last_put = _SentFrame(-math.inf, 0.0, BRAKE, bumper_pressed=False)
 
     def on_heard(self, frame_id: int, at_s: float) -> None:
         """Note a frame that arrives at the notebook. `at_s`: simulated time in s."""
-        if frame_id in _RANGE_FRAMES:
+        if frame_id in self._wire.range_ids:
             self._heard_at_s[frame_id] = at_s
 
     def on_sent(self, number: int, at_s: float, payload: bytes, age_s: float, *, latched: bool) -> None:
@@ -94,7 +62,7 @@ class Envelope:
         `latched`: whether the guard keeps the robot stopped.
         """
         self.frames += 1
-        told = decode_command(payload)
+        told = self._wire.decode(payload)
         put = _SentFrame(at_s, age_s, told, self.bumpers != 0)
         self._in_transit[number] = put
         self._in_transit.pop(number - _MOST_UNDER_WAY, None)
@@ -124,7 +92,7 @@ class Envelope:
 
         `number`: as in `on_sent`. `at_s`: simulated time in s.
         """
-        told = decode_command(payload)
+        told = self._wire.decode(payload)
         if told is None:
             self.unintelligible += 1
             return None
@@ -177,7 +145,7 @@ class Envelope:
                 continue  # to stand is allowed at once
             if not follows and (old_m_s * new_m_s < 0.0 or abs(new_m_s) < abs(old_m_s)):
                 continue
-            if old_m_s * new_m_s < 0.0 and put.bumper_pressed:
+            if old_m_s * new_m_s < 0.0 and (put.bumper_pressed or min(abs(old_m_s), abs(new_m_s)) <= limits.rest_m_s):
                 old_m_s = 0.0
             if old_m_s * new_m_s < 0.0:
                 self._complain(at_s, f"{side} turns round from {old_m_s:.2f} to {new_m_s:.2f} m/s without a rest")

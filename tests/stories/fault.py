@@ -79,3 +79,8 @@ class FaultInjection:
             return None
         self.acted.add(fault)
         return fault
+
+    def wall_clock_step_s(self) -> float:
+        """Return how far the notebook's wall clock is ahead, in s."""
+        fault = self.acting_on("wall_clock")
+        return 0.0 if fault is None else fault.delay_s * (1.0 if fault.kind == "ahead" else -1.0)

@@ -4,7 +4,7 @@ import random
 from collections import deque
 from typing import NamedTuple
 
-from hal.kurt2_settings import Kurt2Settings
+from hal.robot_settings import RobotSettings
 from simbridge.robot.wheels import Wheels
 from tests.stories.fault import FaultInjection
 from tests.stories.table import Target
@@ -71,7 +71,7 @@ class _Motor:
 class FaultyWheels(Wheels):
     """Wheels whose motors may fail."""
 
-    def __init__(self, robot: Kurt2Settings, injection: FaultInjection, chance: random.Random) -> None:
+    def __init__(self, robot: RobotSettings, injection: FaultInjection, chance: random.Random) -> None:
         super().__init__(robot)
         self._left = _Motor("left_motor", injection, chance, robot.cycle_s)
         self._right = _Motor("right_motor", injection, chance, robot.cycle_s)

@@ -11,7 +11,6 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 from hal.guard_reason import GuardReason
-from hal.kurt2_settings import Kurt2Settings
 from kurt2rt.channel.protocol.limits import BOOT_BYTES
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.decision.standing import STARTED
@@ -32,7 +31,7 @@ from tests.stories.device import TEACHER, Device
 from tests.stories.disk import KilledError, KnowledgeFile
 from tests.stories.hand import DRIVER, Hand
 from tests.stories.level import FaultyLevel
-from tests.stories.rig import ROBOT, Rig
+from tests.stories.rig import Rig
 from tests.stories.table import Case, Fault
 from tests.stories.witness import Witness
 
@@ -65,7 +64,6 @@ class Program:
         chance: random.Random,
         *,
         task: TaskSettings = TASK,
-        settings: Kurt2Settings = ROBOT,
         records: bool = True,
     ) -> None:
         """Open the knowledge in `folder` and start the driver; `number`: of the start."""
@@ -75,6 +73,7 @@ class Program:
         self.hand: Hand | None = None
         self.log: FaultyCanLog | None = None
         self._rig, self._witness, self._time, self._device = rig, witness, rig.time, device
+        settings = self.robot = rig.settings
         self._number, self._chance, self._period_s = number, chance, settings.cycle_s
         self._commands = 0
         path = folder / KNOWLEDGE
@@ -229,9 +228,7 @@ class Program:
             raise KilledError
 
     def _wall_time(self) -> datetime:
-        fault = self._rig.injection.acting_on("wall_clock")
-        step_s = 0.0 if fault is None else fault.delay_s * (1.0 if fault.kind == "ahead" else -1.0)
-        return _FIRST_DAY + timedelta(seconds=self._time.now_s() + step_s)
+        return _FIRST_DAY + timedelta(seconds=self._time.now_s() + self._rig.injection.wall_clock_step_s())
 
     def _wall_clock(self) -> str:
         return self._wall_time().isoformat(timespec="milliseconds")

@@ -1,21 +1,35 @@
-"""Simulated robot, cable and drivers in simulated time, with faults between them."""
+"""Simulated robot, its link and drivers in simulated time, with faults between them."""
 
 import random
+from collections.abc import Callable, Mapping
+from typing import Protocol
 
 from hal.bus import CONTROL_ID, CanBus
 from hal.codec import load_codec
 from hal.guard_reason import GuardReason
+from hal.guarded_robot import GuardedRobot
 from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2Settings, load_kurt2
+from hal.robot_settings import RobotSettings, load_robot
 from hal.tap import Tap
 from hal.watchdog import POLL_S
-from simbridge.simulated_robot import SimulatedKurt2
+from kurt2rt.robots.turtlebot.settings import TurtlebotSettings
+from simbridge.robot.wheels import Wheels
+from simbridge.simulated_robot import SimulatedKurt2, SimulatedRobot
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
 from tests.stories.fault import FaultInjection, SimulatedTime
 from tests.stories.faulty_cable import EndFaults
+from tests.stories.linked_ends import SerialEnds, TopicEnds
 from tests.stories.motors import FaultyWheels
+from tests.stories.table import Fault, RobotKind
+from tests.stories.wire import KURT2, Wire
 
 ROBOT: Kurt2Settings = load_kurt2()
+ROBOTS: Mapping[RobotKind, RobotSettings] = {
+    "kurt2": ROBOT,
+    "school": load_robot("school"),
+    "turtlebot": load_robot("turtlebot"),
+}
 
 _LENGTH_M, _WIDTH_M = 10.0, 4.0
 _WALL_AT_M = 0.22
@@ -30,48 +44,136 @@ CORRIDOR = WorldSettings(
 """Corridor with one constant situation, so that a standstill is due to the fault."""
 
 
+class Ends(Protocol):
+    """Both ends of the link between a robot and its drivers, and the faults between them."""
+
+    on_sent: Callable[[int, bytes], None]
+    """Callback with number and payload of each command that the driver sends."""
+    on_arrived: Callable[[int, bytes, float], None]
+    """Callback with number, payload and time of arrival of each command that arrives at the robot."""
+    on_heard: Callable[[int, float], None]
+    """Callback with identifier and time of each message with readings that arrives at the notebook."""
+
+    @property
+    def wire(self) -> Wire:
+        """Form of the messages."""
+        ...
+
+    @property
+    def back_at_s(self) -> float:
+        """Time from which on a program can start, in s; it needs its adapter."""
+        ...
+
+    def simulated(self, world: WorldSettings, seed: int, wheels: Wheels) -> SimulatedRobot:
+        """Return the robot at its end."""
+        ...
+
+    def start_driver(self) -> GuardedRobot:
+        """Return a new driver at the notebook's end, like that of a new process."""
+        ...
+
+    def kill_driver(self) -> None:
+        """End a driver that does not even brake."""
+        ...
+
+    def begin(self, fault: Fault) -> None:
+        """Do what a fault does at its beginning."""
+        ...
+
+    def finish(self, fault: Fault) -> None:
+        """Do what a fault does at its end."""
+        ...
+
+    def close(self) -> None:
+        """Close the robot's end."""
+        ...
+
+
+class CanEnds(EndFaults):
+    """Ends of KURT2's cable."""
+
+    wire = KURT2
+
+    def __init__(self, settings: Kurt2Settings, injection: FaultInjection, chance: random.Random) -> None:
+        super().__init__(injection, load_codec(settings.can.database), chance)
+        self._settings = settings
+        self._robots_bus = CanBus("cable", self.open_robots_end)
+        self._robots_bus.set_id_filter({CONTROL_ID})
+        self._notebooks_bus = CanBus("cable", self.open_notebooks_end)
+
+    @property
+    def back_at_s(self) -> float:
+        fault = self._injection.of("controller")
+        return fault.end_s if fault is not None and self.is_unplugged else 0.0
+
+    def simulated(self, world: WorldSettings, seed: int, wheels: Wheels) -> SimulatedRobot:
+        return SimulatedKurt2(self._settings, world, self._robots_bus, seed, wheels=wheels)
+
+    def start_driver(self) -> GuardedRobot:
+        self.replace_cable()
+        self._robots_bus.reopen()
+        self._notebooks_bus = CanBus("cable", self.open_notebooks_end)
+        return Kurt2(self._settings, self._notebooks_bus, watchdog_clock=self._time.now_s)
+
+    def kill_driver(self) -> None:
+        self._notebooks_bus.shutdown()
+
+    def attach_tap(self, tap: Tap | None) -> None:
+        """Let `tap` see each frame that passes the driver's interface."""
+        self._notebooks_bus.tap = tap
+
+    def close(self) -> None:
+        self._robots_bus.shutdown()
+
+
+def _ends_of(settings: RobotSettings, injection: FaultInjection, chance: random.Random) -> Ends:
+    match settings:
+        case Kurt2Settings():
+            return CanEnds(settings, injection, chance)
+        case TurtlebotSettings():
+            return TopicEnds(settings, injection, chance)
+        case _:
+            return SerialEnds(settings, injection, chance)
+
+
 class Rig:
-    """Robot and cable, and one driver after the other.
+    """Robot and its link, and one driver after the other.
 
     Ticks, controller cycles and watchdog polls have independent phases. Events of simulated time replace the
     watchdog's thread.
     """
 
-    def __init__(self, settings: Kurt2Settings, world: WorldSettings, chance: random.Random) -> None:
+    def __init__(self, settings: RobotSettings, world: WorldSettings, chance: random.Random) -> None:
         self.time = SimulatedTime()
         self.injection = FaultInjection(self.time)
-        self.ends = EndFaults(self.injection, load_codec(settings.can.database), chance)
-        self.robot: Kurt2 | None = None
+        self.settings = settings
+        self.ends = _ends_of(settings, self.injection, chance)
+        self.robot: GuardedRobot | None = None
         """Present driver; None between two of them."""
-        self._settings, self._chance = settings, chance
+        self._chance = chance
         self._starts = [start.pose for start in world.start_poses]
-        self._robots_bus = CanBus("cable", self.ends.open_robots_end)
-        self._robots_bus.set_id_filter({CONTROL_ID})
-        self._notebooks_bus = CanBus("cable", self.ends.open_notebooks_end)
         wheels = FaultyWheels(settings, self.injection, chance)
-        self.simulation = SimulatedKurt2(settings, world, self._robots_bus, chance.getrandbits(32), wheels=wheels)
+        self.simulation = self.ends.simulated(world, chance.getrandbits(32), wheels)
         self.time.every(settings.cycle_s, 0.0, self._step)
         self.time.every(POLL_S, chance.uniform(0.0, POLL_S), self._poll_watchdog)
 
-    def start_driver(self) -> Kurt2:
-        """Start a new driver on another cable, like a start of its process."""
-        self.ends.replace_cable()
-        self._robots_bus.reopen()
-        self._notebooks_bus = CanBus("cable", self.ends.open_notebooks_end)
-        self.robot = Kurt2(self._settings, self._notebooks_bus, watchdog_clock=self.time.now_s)
+    def start_driver(self) -> GuardedRobot:
+        """Start a new driver, like a start of its process."""
+        self.robot = self.ends.start_driver()
         return self.robot
 
     def end_driver(self, *, killed: bool = False) -> None:
         """End the driver; one that was `killed` sends nothing any more."""
         if self.robot is not None and killed:
-            self._notebooks_bus.shutdown()
+            self.ends.kill_driver()
         elif self.robot is not None:
             self.robot.close()
         self.robot = None
 
     def attach_tap(self, tap: Tap | None) -> None:
-        """Let `tap` see each frame that passes the driver's interface."""
-        self._notebooks_bus.tap = tap
+        """Let `tap` see each frame that passes the driver's interface to CAN."""
+        assert isinstance(self.ends, CanEnds)
+        self.ends.attach_tap(tap)
 
     def set_down(self) -> None:
         """Put the robot at one of the world's start poses."""
@@ -83,7 +185,7 @@ class Rig:
 
     def close(self) -> None:
         self.end_driver()
-        self._robots_bus.shutdown()
+        self.ends.close()
 
     def _step(self) -> None:
         self.simulation.step()

@@ -21,8 +21,6 @@ LASTING_S = 3.0
 _ALWAYS = frozenset({"stopped", "unknown", "teacher", "unattended", "front bumper", "rear bumper", "touches", "blind"})
 """Reasons to stand that need no fault: a teacher's, a question, what is in the way; blind is told by its sensors."""
 _DROVE_S = 0.3
-_SHOWS_M_S = 0.2
-"""Slowest set point that shows whether wheels obey: in a narrow curve one side nearly stands."""
 _ROUNDING_S = 1e-6
 _SILENT_S = 0.35
 """Time after the teachers' last message in which the robot may drive, before phase 5."""
@@ -114,7 +112,7 @@ class Rules:
         alone = all(each is fault or each.end_s < from_s or each.begin_s > until_s for each in self.begun)
         if not alone or self._started_s > from_s or fault.end_s < until_s or not fault.acts(fault.begin_s):
             return
-        if witness.slowest_m_s(from_s, until_s) < _SHOWS_M_S:
+        if witness.slowest_m_s(from_s, until_s) < witness.limits.shows_m_s:
             return
         # If it is not reached, the robot's own watchdog makes it stand.
         is_long = fault.end_s - fault.begin_s >= TABLE.envelope.controller_watchdog_s

@@ -8,12 +8,13 @@ import yaml
 
 from config.settings import Settings, load_settings
 from hal.points import Point
-from tests.stories.table import TABLE, Fault, Kind, Target
+from tests.stories.table import TABLE, Fault, Kind, RobotKind, Target
 
 CALM_S = 6.0
 """Time at the end in which nothing fails any more, and the teacher is there."""
 FIRST_S = 1.0
 MOST_FAULTS = 12
+_ROBOTS: tuple[RobotKind, ...] = ("kurt2", "kurt2", "kurt2", "school", "turtlebot")
 _GAP_S = 0.5
 """Least time between two faults of one target."""
 
@@ -46,6 +47,7 @@ class Story(Settings):
     seed: int
     """Seed of all that chance decides: body and sensors, noise, phases, frames that are lost."""
     lasts_s: float
+    robot: RobotKind = "kurt2"
     world: str = "a"
     task: str = "wall_following"
     taught: bool = False
@@ -56,6 +58,10 @@ class Story(Settings):
     """Points of the program at which something happens now and then."""
     teaching: Teaching = Teaching()
     faults: tuple[Event, ...] = ()
+
+    def named(self, name: str) -> str:
+        """Return the name of one of the robot's worlds or tasks, as its plug-in has it."""
+        return name if self.robot == "kurt2" else f"{self.robot}/{name}"
 
     @property
     def over_s(self) -> float:
@@ -69,14 +75,20 @@ def all_kinds() -> list[tuple[Target, Kind]]:
 
 
 def story_of(seed: int, lasts_s: float) -> Story:
-    """Return the story of a seed. It leaves out half of the kinds, so that some of the others meet often."""
+    """Return the story of a seed. It leaves out half of the kinds, so that some of the others meet often.
+
+    Half of the faults are of parts that the robot has alone.
+    """
     chance = random.Random(f"story {seed}")
-    kinds = sorted(all_kinds())
+    robot = chance.choice(_ROBOTS)
+    kinds = sorted(each for each in all_kinds() if TABLE.has(robot, each[0]))
     kinds = chance.sample(kinds, len(kinds) // 2)
+    own = [each for each in kinds if each[0] in TABLE.parts[robot]]
+    parts = [each for each in (own, sorted({*kinds} - {*own})) if each]
     faults: list[Event] = []
     busy: dict[Target, list[tuple[float, float]]] = {}
     for _ in range(chance.randint(0, MOST_FAULTS)):
-        target, kind = chance.choice(kinds)
+        target, kind = chance.choice(chance.choice(parts))
         lasts = chance.uniform(*TABLE.row(target, kind).span_s)
         lasts = round(min(lasts, (lasts_s - CALM_S - FIRST_S) / 2), 3)
         at = round(chance.uniform(FIRST_S, lasts_s - CALM_S - lasts), 3)
@@ -87,6 +99,7 @@ def story_of(seed: int, lasts_s: float) -> Story:
     return Story(
         seed=seed,
         lasts_s=lasts_s,
+        robot=robot,
         world=chance.choice(("a", "a", "b", "c")),
         task=chance.choice(("wall_following", "fleeing")),
         taught=chance.random() < 0.5,

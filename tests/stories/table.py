@@ -8,6 +8,8 @@ from pydantic import Field, model_validator
 
 from config.settings import Settings, load_settings
 
+RobotKind = Literal["kurt2", "school", "turtlebot"]
+
 Target = Literal[
     "sensor_board_1",
     "sensor_board_2",
@@ -28,8 +30,10 @@ Target = Literal[
     "link",
     "program",
     "wall_clock",
+    "serial",
+    "topics",
 ]
-"""Part that fails; bus_in is the direction from robot to notebook, bus_out the opposite one. The last seven fail in
+"""Part that fails; bus_in is the direction from robot to notebook, bus_out the opposite one. The last nine fail in
 stories only: a stranger is another node on the bus, link the one of the teacher's device."""
 
 Kind = Literal[
@@ -60,6 +64,10 @@ Kind = Literal[
     "killed_after_commit",
     "back",
     "ahead",
+    "crlf",
+    "stamps",
+    "stranger",
+    "alarm",
 ]
 """Kind of fault: no output, repeated output, nonsense, plausible but false, rarer, late, on and off; then those that
 only stories have. A sound hand is no fault: a second teacher drives."""
@@ -96,6 +104,10 @@ class Limits(Settings):
     controller_watchdog_s: Seconds
     senses_age_s: Seconds
     """Longest silence of one of the range sensors' frames in which wheels may turn."""
+    shows_m_s: float
+    """Slowest set point that shows whether wheels obey: in a narrow curve one side nearly stands."""
+    rest_m_s: float = 0.0
+    """Speed of a side that rests: steps of a twist are not those of its sides."""
 
 
 class AnyRow(Settings):
@@ -229,13 +241,19 @@ class FaultTable(Settings):
     """Table of twelve targets and seven kinds, and of what only stories have."""
 
     schedule: Schedule
-    envelope: Limits
+    envelopes: dict[RobotKind, Limits]
+    parts: dict[RobotKind, tuple[Target, ...]]
+    """Targets that one robot has alone; it has all those that no robot has alone."""
     cases: dict[Target, dict[Kind, Row]]
     stories: dict[Target, dict[Kind, StoryRow]]
 
     def row(self, target: Target, kind: Kind) -> AnyRow:
         """Return the row of a fault, of drills or of stories alone."""
         return self.cases.get(target, {}).get(kind) or self.stories[target][kind]
+
+    def has(self, robot: RobotKind, target: Target) -> bool:
+        """Return whether a robot has a target."""
+        return all(robot == each or target not in parts for each, parts in self.parts.items())
 
 
 class Case(NamedTuple):

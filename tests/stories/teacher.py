@@ -25,7 +25,6 @@ from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.teacher import ScriptedTeacher
 from tests.stories.device import TEACHER
 from tests.stories.program import Program
-from tests.stories.rig import ROBOT
 from tests.stories.story import Teaching
 
 _AWAY_EVERY_S, _AWAY_S = 30.0, 4.0
@@ -43,12 +42,14 @@ class StoryTeacher:
         self.is_calm = False
         """True when he is there, and neither errs nor stops any more."""
         self._program, self._chance = program, chance
+        robot = program.robot
+        self._cycle_s = robot.cycle_s
         self._phase = Phase(teaching.phase)
         self._scripted = ScriptedTeacher(
-            task.policy.build(ROBOT.infrared),
-            tuple(load_task_repertoire(task, ROBOT)),
+            task.policy.build(robot.infrared),
+            tuple(load_task_repertoire(task, robot)),
             TeacherSettings(reaction_s=teaching.reaction_s, patience_s=0.3, error_rate=teaching.error_rate),
-            period_s=ROBOT.cycle_s,
+            period_s=robot.cycle_s,
             seed=chance.getrandbits(32),
             session=program.next_id(),
         )
@@ -60,7 +61,7 @@ class StoryTeacher:
     def update(self, record: TickRecord) -> list[Command]:
         """Return what he says after this tick."""
         if self._happens(_AWAY_EVERY_S):
-            self._away_until_tick = record.tick + round(_AWAY_S / ROBOT.cycle_s)
+            self._away_until_tick = record.tick + round(_AWAY_S / self._cycle_s)
         if not self.is_calm and record.tick < self._away_until_tick:
             return []
         watch: list[Command] = [Watch(TEACHER, record.tick)] if self._is_due(record.tick, _WATCHES_EVERY_S) else []
@@ -93,7 +94,7 @@ class StoryTeacher:
         return [] if command is None else [command]
 
     def _is_due(self, tick: int, period_s: float) -> bool:
-        return tick % round(period_s / ROBOT.cycle_s) == 0
+        return tick % round(period_s / self._cycle_s) == 0
 
     def _happens(self, every_s: float) -> bool:
-        return not self.is_calm and self._chance.random() < ROBOT.cycle_s / every_s
+        return not self.is_calm and self._chance.random() < self._cycle_s / every_s

@@ -22,10 +22,10 @@ from kurt2rt.runs.replay.verify import verify
 from simbridge.worlds.world_loading import load_world
 from tests.stories.device import Device
 from tests.stories.program import KNOWLEDGE, Program
-from tests.stories.rig import ROBOT, Rig
+from tests.stories.rig import ROBOTS, Rig
 from tests.stories.rules import LASTING_S, Rules
 from tests.stories.story import CALM_S, Event, Story
-from tests.stories.table import Fault
+from tests.stories.table import Fault, RobotKind
 from tests.stories.teacher import StoryTeacher
 from tests.stories.witness import Witness
 
@@ -67,8 +67,9 @@ class _Teller:
     def __init__(self, story: Story, folder: Path) -> None:
         self.told = Told()
         self._story, self._folder = story, folder
-        self._task: TaskSettings = load_task(story.task)
-        self.rig = Rig(ROBOT, load_world(story.world, ROBOT), self._chance("rig"))
+        self._task: TaskSettings = load_task(story.named(story.task))
+        robot = ROBOTS[story.robot]
+        self.rig = Rig(robot, load_world(story.named(story.world), robot), self._chance("rig"))
         self._time = self.rig.time
         self._witness = Witness(self.rig)
         self._device = Device(self.rig.injection, self._chance("device"))
@@ -109,10 +110,7 @@ class _Teller:
         told, story = self.told, self._story
         files, tasks = _open_files(), len(asyncio.all_tasks())
         told.starts += 1
-        if self.rig.ends.is_unplugged:  # no program starts without its bus
-            adapter = self.rig.injection.of("controller")
-            assert adapter is not None
-            self._time.run_until(adapter.end_s)
+        self._time.run_until(self.rig.ends.back_at_s)  # no program starts without its bus
         self.rig.set_down()
         program = self._program = Program(
             self.rig,
@@ -184,7 +182,7 @@ class _Teller:
         self.rig.ends.begin(fault)
         self._rules.on_fault(fault)
         match fault.target, fault.kind:
-            case "controller", "restart":
+            case "controller" | "serial" | "topics", "restart":
                 self.rig.power_cycle()
                 self.rig.injection.acted.add(fault)
             case "program", kind:
@@ -218,20 +216,20 @@ def _open_files() -> int:
 async def tell(story: Story, folder: Path) -> Told:
     """Drive a story in an empty folder."""
     if story.taught:
-        shutil.copy(await _knowledge(story.task), folder / KNOWLEDGE)
+        shutil.copy(await _knowledge(story.robot, story.task), folder / KNOWLEDGE)
     teller = _Teller(story, folder)
     with closing(teller.rig):
         return await teller.tell()
 
 
-_known: dict[str, tuple[TemporaryDirectory[str], Path]] = {}
+_known: dict[tuple[RobotKind, str], tuple[TemporaryDirectory[str], Path]] = {}
 
 
-async def _knowledge(task: str) -> Path:
+async def _knowledge(robot: RobotKind, task: str) -> Path:
     """Return a knowledge file of a task, taught in a story in which nothing fails."""
-    if task not in _known:
+    if (robot, task) not in _known:
         folder = TemporaryDirectory()
-        told = await tell(Story(seed=_KNOWN_SEED, lasts_s=_KNOWN_S, task=task), Path(folder.name))
+        told = await tell(Story(seed=_KNOWN_SEED, lasts_s=_KNOWN_S, robot=robot, task=task), Path(folder.name))
         assert not told.problems, told.problems
-        _known[task] = folder, Path(folder.name) / KNOWLEDGE
-    return _known[task][1]
+        _known[robot, task] = folder, Path(folder.name) / KNOWLEDGE
+    return _known[robot, task][1]

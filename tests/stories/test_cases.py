@@ -1,6 +1,7 @@
 """All 84 cases: something fails while the robot drives, and what the table says comes of it."""
 
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
@@ -8,8 +9,8 @@ from hal.guard_reason import GuardReason
 from kurt2rt.core.decision.decision import DecisionCause
 from tests.stories.drill import drilled
 from tests.stories.judge import judge
-from tests.stories.rig import ROBOT
-from tests.stories.table import CASES, KINDS, TABLE, TARGETS, Case, case_of
+from tests.stories.rig import ROBOTS
+from tests.stories.table import CASES, KINDS, TABLE, TARGETS, Case, RobotKind, case_of
 
 
 def is_quick(case: Case) -> bool:
@@ -59,10 +60,11 @@ def test_the_table_speaks_the_words_of_guard_and_runtime() -> None:
         assert {*case.must.words, case.must.latches} - {None} <= words, str(case)
 
 
-def test_the_envelope_is_that_of_the_robot() -> None:
-    limits = TABLE.envelope
-    assert limits.speed_m_s == ROBOT.guard.maximum_speed_m_s
-    assert limits.acceleration_m_s2 == ROBOT.guard.acceleration_m_s2
-    assert limits.braking_m_s2 == ROBOT.guard.braking_m_s2
-    assert limits.command_age_s == ROBOT.guard.command_age_s
-    assert limits.controller_watchdog_s == ROBOT.motors.controller_watchdog_s
+@pytest.mark.parametrize("kind", get_args(RobotKind))
+def test_the_envelope_is_that_of_the_robot(kind: RobotKind) -> None:
+    limits, robot = TABLE.envelopes[kind], ROBOTS[kind]
+    assert limits.speed_m_s == robot.guard.maximum_speed_m_s
+    assert limits.acceleration_m_s2 == robot.guard.acceleration_m_s2
+    assert limits.braking_m_s2 == robot.guard.braking_m_s2
+    assert limits.command_age_s == robot.guard.command_age_s
+    assert limits.controller_watchdog_s == robot.motors.controller_watchdog_s

@@ -7,10 +7,11 @@ import pytest
 
 from hal.control import Mode, SpeedControl, control_frame, encode_brake
 from tests.stories.drill import drilled
-from tests.stories.envelope import Envelope, decode_command
+from tests.stories.envelope import Envelope
 from tests.stories.judge import judge
 from tests.stories.rig import ROBOT
 from tests.stories.table import TABLE, Kind, Target, case_of
+from tests.stories.wire import decode_control
 
 RANGE_FRAME = 5
 BRAKE = bytes(encode_brake().data)
@@ -25,7 +26,7 @@ class Drive:
     """Frames handed to the bus one after the other, that arrive at once unless told otherwise."""
 
     def __init__(self) -> None:
-        self.envelope = Envelope(TABLE.envelope)
+        self.envelope = Envelope(TABLE.envelopes["kurt2"])
         self.number = 0
         self.now_s = 0.0
 
@@ -70,15 +71,15 @@ def two_lost(first: bytes, *lost_cm_s: int) -> Drive:
 
 
 def test_it_reads_what_the_robot_reads() -> None:
-    told = decode_command(bytes(control_frame(SpeedControl(Mode.SPEED_CM, -12, 34)).data))
+    told = decode_control(bytes(control_frame(SpeedControl(Mode.SPEED_CM, -12, 34)).data))
     assert told is not None
     assert (told.left_m_s, told.right_m_s, told.brake) == (-0.12, 0.34, False)
-    brake = decode_command(BRAKE)
+    brake = decode_control(BRAKE)
     assert brake is not None
     assert brake.brake
     assert brake.standing
-    assert decode_command(bytes(8)) is None
-    assert decode_command(b"\0\2") is None
+    assert decode_control(bytes(8)) is None
+    assert decode_control(b"\0\2") is None
 
 
 @pytest.mark.parametrize(

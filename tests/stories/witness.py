@@ -10,9 +10,10 @@ from kurt2rt.core.teaching.commands import Drive, Resume, Stop
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.faulty_sensor import RobotProxy
 from kurt2rt.platform.tick_timer import TickTimer
-from tests.stories.envelope import Envelope, WheelCommand
+from tests.stories.envelope import Envelope
 from tests.stories.rig import Rig
 from tests.stories.table import TABLE
+from tests.stories.wire import WheelCommand
 
 REPEATED = ResultCode.REPEATED
 _ROUNDING_S = 1e-6
@@ -20,8 +21,8 @@ _LOOKS_EVERY_S = 0.05
 _CLOCK_SETTLES_S = 0.1
 """Time after the end of a clock's fault in which it may still jump, back to the truth."""
 _STANDS_M_S = 0.02
-_ROLLS_OUT_S = 0.8
-"""Time after the last set point in which wheels come to rest: the robot's own watchdog, and rolling out."""
+_ROLLS_OUT_S = 0.6
+"""Time after the robot's own watchdog in which wheels come to rest."""
 
 
 class StandstillInterval(NamedTuple):
@@ -35,7 +36,8 @@ class Witness(RobotProxy):
     """Robot of the tick that sees what the driver sends, what arrives at the robot, and what each tick did."""
 
     def __init__(self, rig: Rig) -> None:
-        self.envelope = Envelope(TABLE.envelope)
+        self.limits = TABLE.envelopes[rig.ends.wire.robot]
+        self.envelope = Envelope(self.limits, rig.ends.wire)
         self.complaints = self.envelope.violations
         """Complaints about envelope, standstill and ticks."""
         self.resumes = 0
@@ -125,8 +127,8 @@ class Witness(RobotProxy):
         state, since_s, heard_at_s = True, 0.0, 0.0
         heard = [(at_s, told.standing) for at_s, told in self._arrivals if at_s < end_s]
         for at_s, standing in (*heard, (end_s, True)):
-            if not state and at_s - heard_at_s >= TABLE.envelope.controller_watchdog_s:
-                state, since_s = True, heard_at_s + TABLE.envelope.controller_watchdog_s
+            if not state and at_s - heard_at_s >= self.limits.controller_watchdog_s:
+                state, since_s = True, heard_at_s + self.limits.controller_watchdog_s
             if at_s == end_s:
                 break
             if standing != state:
@@ -163,12 +165,13 @@ class Witness(RobotProxy):
             self._causes.append((now_s, (reason,)))
 
     def _look_at_the_wheels(self) -> None:
-        """Complain of wheels that turn though nothing told them to for long; a broken motor may."""
-        now_s = self._time.now_s()
-        if any(self._rig.injection.of(side) is not None for side in ("left_motor", "right_motor")):
+        """Complain of wheels that turn though nothing told them to for long; a broken motor or a stranger may."""
+        now_s, injection = self._time.now_s(), self._rig.injection
+        faults = [injection.of(each) for each in ("left_motor", "right_motor", "serial", "topics")]
+        if any(each is not None and (each.kind == "stranger" or "motor" in each.target) for each in faults):
             self._moved_at_s = now_s
         turns = max(abs(each) for each in self._rig.simulation.wheel_speeds) > _STANDS_M_S
-        if turns and now_s - self._moved_at_s > _ROLLS_OUT_S:
+        if turns and now_s - self._moved_at_s > self.limits.controller_watchdog_s + _ROLLS_OUT_S:
             self._complain(f"wheels turn {now_s - self._moved_at_s:.1f} s after the last set point")
             self._moved_at_s = now_s
 

@@ -1,0 +1,363 @@
+"""Ends of the links of robots without CAN, a serial line and topics of ROS 2, and the faults between them."""
+
+import random
+from abc import ABC, abstractmethod
+from binascii import crc_hqx
+from collections.abc import Callable
+from functools import partial
+from typing import Generic, TypeVar
+
+from hal.bus import BusError
+from hal.guarded_robot import GuardedRobot
+from hal.linked_robot import LinkedRobot
+from hal.robot_settings import RobotSettings
+from kurt2rt.robots.school.lines import NUMBERS
+from kurt2rt.robots.school.link import SchoolLink
+from kurt2rt.robots.school.simulated import SchoolElectronics
+from kurt2rt.robots.turtlebot.lidar import lidar_of
+from kurt2rt.robots.turtlebot.link import TurtlebotLink
+from kurt2rt.robots.turtlebot.settings import TurtlebotSettings
+from kurt2rt.robots.turtlebot.simulated import TurtlebotElectronics
+from kurt2rt.ros.messages import DiagnosticArray, DiagnosticStatus, Header, encode, to_time
+from kurt2rt.ros.port import LocalTopics
+from kurt2rt.ros.twist import PlaneTwist, Twists
+from simbridge.robot.wheels import Wheels
+from simbridge.simulated_robot import SimulatedRobot
+from simbridge.worlds.world_settings import WorldSettings
+from tests.stories import wire
+from tests.stories.fault import FaultInjection
+from tests.stories.table import Fault, Target
+from tests.stories.wire import Wire
+
+Deliver = Callable[[bytes], None]
+SettingsT = TypeVar("SettingsT", bound=RobotSettings)
+
+_OUT = "out"
+"""Way of the driver's commands; the others are those of the robot's readings."""
+_SHARE = 0.3
+"""Share of the messages that a poor link loses, doubles, garbles or lets change places."""
+_SPEAKS_EVERY_S = 0.05
+_MOST_GARBAGE = 60
+_WALL_S = 1e9
+"""Wall clock at the beginning of simulated time; a stamp of 0 would mean none."""
+
+
+class LinkedEnds(ABC, Generic[SettingsT]):
+    """Base of both. A late message does not overtake; what the driver sends is neither doubled nor reordered."""
+
+    target: Target
+    wire: Wire
+
+    def __init__(self, settings: SettingsT, injection: FaultInjection, chance: random.Random) -> None:
+        self.on_sent: Callable[[int, bytes], None] = lambda _number, _payload: None
+        """Callback with number and payload of each command that the driver sends."""
+        self.on_arrived: Callable[[int, bytes, float], None] = lambda _number, _payload, _at_s: None
+        """Callback with number, payload and time of arrival of each command that arrives at the robot."""
+        self.on_heard: Callable[[int, float], None] = lambda _id, _at_s: None
+        """Callback with 0 and the time at which the newest readings were made that arrived at the notebook."""
+        self._settings, self._injection, self._time, self._chance = settings, injection, injection.time, chance
+        self._waiting = 0
+        """Bytes of the driver that wait to leave the notebook."""
+        self._sent = 0
+        self._made_s = 0.0
+        self._due_s: dict[str, float] = {}
+        self._held: dict[str, Callable[[], None]] = {}
+        self._sound: dict[str, bytes] = {}
+        """Newest message of each way while nothing failed."""
+
+    @abstractmethod
+    def simulated(self, world: WorldSettings, seed: int, wheels: Wheels) -> SimulatedRobot:
+        """Return the robot at its end."""
+
+    @abstractmethod
+    def start_driver(self) -> GuardedRobot:
+        """Return a new driver at the notebook's end."""
+
+    def kill_driver(self) -> None:
+        """Do nothing: without its program a driver sends nothing."""
+
+    def close(self) -> None:
+        """Do nothing: this link is in memory."""
+
+    @property
+    def back_at_s(self) -> float:
+        """Time from which on a program can start."""
+        fault = self._injection.acting_on(self.target)
+        return fault.end_s if fault is not None and fault.kind == "unplugged" else 0.0
+
+    def begin(self, fault: Fault) -> None:
+        """Do what a fault does at its beginning: somebody begins to speak."""
+        if fault.target == self.target and fault.kind in ("stranger", "alarm"):
+            self._speak(fault)
+
+    def finish(self, fault: Fault) -> None:
+        """Do what a fault does at its end."""
+
+    @abstractmethod
+    def _say(self, fault: Fault, *, over: bool) -> None:
+        """Say what a stranger or a diagnosis says while the fault lasts, and when it is over."""
+
+    @abstractmethod
+    def _garbled(self, message: bytes) -> bytes:
+        """Return what arrives in place of a message."""
+
+    @abstractmethod
+    def _repeated(self, old: bytes, message: bytes) -> bytes:
+        """Return a message with the readings of an old one."""
+
+    @abstractmethod
+    def _has_ranges(self, message: bytes) -> bool:
+        """Return whether a message holds readings of the range sensors."""
+
+    def _speak(self, fault: Fault) -> None:
+        now_s = self._time.now_s()
+        self._say(fault, over=now_s >= fault.end_s)
+        self._injection.acted.add(fault)
+        if now_s < fault.end_s:
+            self._time.at(min(now_s + _SPEAKS_EVERY_S, fault.end_s), lambda: self._speak(fault))
+
+    def _command(self, payload: bytes, deliver: Deliver) -> None:
+        """Carry a command of the driver."""
+        self._sent += 1
+        number = self._sent
+        self.on_sent(number, payload)
+
+        def arrive(each: bytes) -> None:
+            self.on_arrived(number, each, self._time.now_s())
+            deliver(each)
+
+        self._carry(_OUT, payload, arrive)
+
+    def _report(self, way: str, payload: bytes, deliver: Deliver) -> None:
+        """Carry a report of the robot."""
+        made_s = self._time.now_s()
+
+        def arrive(each: bytes) -> None:
+            if self._has_ranges(each):
+                self._made_s = max(self._made_s, made_s)
+                self.on_heard(0, self._made_s)
+            deliver(each)
+
+        self._carry(way, payload, arrive)
+
+    def _carry(self, way: str, message: bytes, deliver: Deliver) -> None:
+        fault, held = self._injection.acting_on(self.target), self._held.pop(way, None)
+        inward, chosen = way != _OUT, fault is not None and self._chance.random() < _SHARE
+        match None if fault is None else fault.kind:
+            case None:
+                self._sound[way] = message
+            case "off" | "unplugged" | "restart":
+                return
+            case "lost" if chosen:
+                return
+            case "delayed":
+                assert fault is not None
+                self._carry_late(fault, way, message, deliver)
+                return
+            case "garbage" if chosen:
+                message = self._garbled(message)
+            case "crlf":
+                message = message[:-1] + b"\r\n"
+            case "stuck" if inward:
+                message = self._repeated(self._sound.get(way, message), message)
+            case "reordered" if inward and chosen and held is None:
+                self._held[way] = partial(deliver, message)
+                return
+            case "doubled" if inward and chosen:
+                deliver(message)
+        deliver(message)
+        if held is not None:
+            held()
+
+    def _carry_late(self, fault: Fault, way: str, message: bytes, deliver: Deliver) -> None:
+        late_s = self._time.now_s() + self._chance.uniform(0.0, 2 * fault.delay_s)
+        due_s = self._due_s[way] = min(max(late_s, self._due_s.get(way, 0.0)), fault.end_s)
+        waits = len(message) if way == _OUT else 0
+        self._waiting += waits
+
+        def arrive() -> None:
+            self._waiting -= waits
+            deliver(message)
+
+        self._time.at(due_s, arrive)
+
+
+class _Port:
+    """End of a serial line (hal.byte_port.BytePort)."""
+
+    name = "line of a story"
+
+    def __init__(self, write: Deliver, check: Callable[[], int]) -> None:
+        """`check`: returns the bytes that wait to leave, or raises BusError."""
+        self._arrived, self._write, self._check = b"", write, check
+
+    @property
+    def waiting(self) -> int:
+        return self._check()
+
+    def arrive(self, data: bytes) -> None:
+        self._arrived += data
+
+    def read(self) -> bytes:
+        self._check()
+        arrived, self._arrived = self._arrived, b""
+        return arrived
+
+    def write(self, data: bytes) -> None:
+        self._check()
+        self._write(data)
+
+    def reopen(self) -> None:
+        self._check()
+        self._arrived = b""
+
+    def close(self) -> None:
+        """Do nothing: the line is in memory."""
+
+
+class SerialEnds(LinkedEnds[RobotSettings]):
+    """Ends of the serial line of a school robot."""
+
+    target = "serial"
+    wire = wire.SCHOOL
+
+    def __init__(self, settings: RobotSettings, injection: FaultInjection, chance: random.Random) -> None:
+        super().__init__(settings, injection, chance)
+        self._robots_port = _Port(lambda line: self._report("line", line, self._drivers_port.arrive), lambda: 0)
+        self._drivers_port = _Port(self._send, self._check)
+
+    def simulated(self, world: WorldSettings, seed: int, wheels: Wheels) -> SimulatedRobot:
+        electronics = SchoolElectronics(self._settings, self._robots_port)
+        return SimulatedRobot(self._settings, world, lambda *_: electronics, seed, wheels=wheels)
+
+    def start_driver(self) -> GuardedRobot:
+        self._drivers_port = _Port(self._send, self._check)
+        sensors, first = len(self._settings.infrared.sensors), self._chance.randrange(NUMBERS)
+        return LinkedRobot(self._settings, SchoolLink(self._drivers_port, sensors, first), self._time.now_s)
+
+    def _check(self) -> int:
+        if self.back_at_s:
+            raise BusError("the adapter is gone", where=_Port.name, do="plug it in")
+        return self._waiting
+
+    def _send(self, line: bytes) -> None:
+        if line.startswith(b"school "):
+            self._carry(_OUT, line, self._robots_port.arrive)
+        else:
+            self._command(line, self._robots_port.arrive)
+
+    def _say(self, fault: Fault, *, over: bool) -> None:  # noqa: ARG002 - a stranger is silent then
+        if not over:
+            chance = self._chance
+            speeds_mm_s = chance.randint(-100, 100), chance.randint(-100, 100)
+            self._robots_port.arrive(_line(b"drive %d %d %d" % (chance.randrange(NUMBERS), *speeds_mm_s)))
+
+    def _garbled(self, message: bytes) -> bytes:
+        return self._chance.choice((message[: self._chance.randrange(len(message))], b"", message)) + (
+            self._chance.randbytes(self._chance.randrange(_MOST_GARBAGE))
+        )
+
+    def _repeated(self, old: bytes, message: bytes) -> bytes:
+        words, before = wire.words_of(message), wire.words_of(old)
+        return _line(b" ".join(words[:6] + before[6:])) if words[:1] == before[:1] == [b"sense"] else message
+
+    def _has_ranges(self, message: bytes) -> bool:
+        return wire.words_of(message)[:1] == [b"sense"]
+
+
+def _line(body: bytes) -> bytes:
+    return b"%s*%04X\n" % (body, crc_hqx(body, 0))
+
+
+class _Clock:
+    """Clocks of one end (kurt2rt.ros.inbox.Clock); its wall clock may be set."""
+
+    def __init__(self, now_s: Callable[[], float], step_s: Callable[[], float]) -> None:
+        self.now_s, self._step_s = now_s, step_s
+
+    def wall_s(self) -> float:
+        return _WALL_S + self.now_s() + self._step_s()
+
+
+class _Topics(LocalTopics):
+    """Topics at one end of a network."""
+
+    def __init__(self, settings: TurtlebotSettings, send: Callable[[str, bytes], None]) -> None:
+        super().__init__(settings.ros)
+        self._send = send
+
+    def carry(self, key: str, payload: bytes, sender: object = None) -> None:
+        """Send what this end's program publishes; deliver what comes from elsewhere."""
+        if sender is None:
+            super().carry(key, payload)
+        elif self.connected:
+            self._send(key, payload)
+
+
+class TopicEnds(LinkedEnds[TurtlebotSettings]):
+    """Ends of the topics of a base."""
+
+    target = "topics"
+    wire = wire.TURTLEBOT
+
+    def __init__(self, settings: TurtlebotSettings, injection: FaultInjection, chance: random.Random) -> None:
+        super().__init__(settings, injection, chance)
+        self._step_s = 0.0
+        self._robots_clock = _Clock(self._time.now_s, lambda: self._step_s)
+        self._drivers_clock = _Clock(self._time.now_s, injection.wall_clock_step_s)
+        self._twists = Twists(settings.twist, settings)
+        self._robots_topics = _Topics(settings, self._report_of)
+        self._drivers_topics = _Topics(settings, self._send)
+
+    def simulated(self, world: WorldSettings, seed: int, wheels: Wheels) -> SimulatedRobot:
+        electronics = TurtlebotElectronics(self._settings, self._robots_topics.join(), self._robots_clock)
+        return SimulatedRobot(self._settings, world, lambda *_: electronics, seed, wheels=wheels, make_sensors=lidar_of)
+
+    def start_driver(self) -> GuardedRobot:
+        self._drivers_topics = _Topics(self._settings, self._send)
+        fault = self._injection.acting_on(self.target)
+        self._drivers_topics.connected = fault is None or fault.kind != "off"
+        link = TurtlebotLink(self._settings, self._drivers_topics.join(), "topics of a story", self._drivers_clock)
+        return LinkedRobot(self._settings, link, self._time.now_s)
+
+    def begin(self, fault: Fault) -> None:
+        super().begin(fault)
+        if fault.target == self.target:
+            self._drivers_topics.connected = fault.kind != "off"
+            self._step_s = self._chance.choice((-1, 1)) * fault.delay_s if fault.kind == "stamps" else 0.0
+
+    def finish(self, fault: Fault) -> None:
+        if fault.target == self.target:
+            self._drivers_topics.connected, self._step_s = True, 0.0
+
+    def _send(self, key: str, payload: bytes) -> None:
+        self._command(payload, partial(self._robots_topics.carry, key))
+
+    def _report_of(self, key: str, payload: bytes) -> None:
+        self._report(key, payload, partial(self._drivers_topics.carry, key))
+
+    def _say(self, fault: Fault, *, over: bool) -> None:
+        ros, stamp_s = self._settings.ros, self._robots_clock.wall_s()
+        if fault.kind == "alarm":
+            level = DiagnosticStatus.OK if over else DiagnosticStatus.ERROR
+            status = DiagnosticStatus(level, f"{ros.stops_on_errors_of[0]}_motor", "too hot", "", [])
+            array = DiagnosticArray(Header(to_time(stamp_s), ""), [status])
+            self._drivers_topics.carry(ros.diagnostics, encode(array))
+        elif not over:
+            speed_m_s, turn_rad_s = self._chance.uniform(-0.2, 0.2), self._chance.uniform(-1.0, 1.0)
+            twist = encode(self._twists.message(PlaneTwist(speed_m_s, turn_rad_s), stamp_s))
+            for topics in (self._robots_topics, self._drivers_topics):
+                topics.carry(ros.cmd_vel, twist)
+
+    def _garbled(self, message: bytes) -> bytes:
+        chance = self._chance
+        if self.wire.decode(message) is not None or chance.random() < 0.5:  # a twist that chance makes would be obeyed
+            return chance.randbytes(chance.randrange(_MOST_GARBAGE))
+        place = chance.randrange(len(message))
+        return message[:place] + chance.randbytes(1) + message[place + 1 :]
+
+    def _repeated(self, old: bytes, message: bytes) -> bytes:
+        return message[:12] + old[12:] if self._has_ranges(message) else message  # CDR's header and the stamp
+
+    def _has_ranges(self, message: bytes) -> bool:
+        return message[20:29] == b"base_scan" or len(message) > 1000
