@@ -41,23 +41,24 @@ class Twists:
         # A turn that is cut off makes the inner side quicker, so the robot may have to drive a step slower.
         for less_forward, less_turn in ((0, 0), (1, 0), (0, 1), (1, 1)):
             steps = _reduced(forward, less_forward), _reduced(turn, less_turn)
-            if self._loss_m_s(*steps, speeds) < math.inf:
-                return self._twist(*steps)
+            if self._loss_m_s(steps, speeds) < math.inf:
+                return self._twist(steps)
         # Of sides that turn against each other, a speed that is cut off makes one quicker, by many steps of the turn.
         ahead_m_s, behind_m_s = map(abs, speeds if turn < 0 else speeds[::-1])
         nearest = [(0, 0)]
-        for steps in (forward - 1, forward, forward + 1):
-            forward_m_s = steps * settings.linear_step_m_s
+        for each in (forward - 1, forward, forward + 1):
+            forward_m_s = each * settings.linear_step_m_s
             most = _whole_steps(min(ahead_m_s - forward_m_s, behind_m_s + forward_m_s), step_m_s)
-            nearest.append((steps, max(-most, min(most, turn))))
-        return self._twist(*min(nearest, key=lambda steps: self._loss_m_s(*steps, speeds)))
+            nearest.append((each, max(-most, min(most, turn))))
+        return self._twist(min(nearest, key=lambda steps: self._loss_m_s(steps, speeds)))
 
-    def _twist(self, forward: int, turn: int) -> PlaneTwist:
+    def _twist(self, steps: tuple[int, int]) -> PlaneTwist:
+        forward, turn = steps
         return PlaneTwist(forward * self._settings.linear_step_m_s, turn * self._settings.angular_step_rad_s)
 
-    def _loss_m_s(self, forward: int, turn: int, speeds: WheelSpeeds) -> float:
+    def _loss_m_s(self, steps: tuple[int, int], speeds: WheelSpeeds) -> float:
         """Return by how much both sides are slower than told with a twist in steps; infinite if one is quicker."""
-        sides = list(zip(self.to_wheels(self._twist(forward, turn)), speeds, strict=True))
+        sides = list(zip(self.to_wheels(self._twist(steps)), speeds, strict=True))
         if any(abs(slowed) > abs(told) + _ROUNDING_M_S for slowed, told in sides):
             return math.inf
         return sum(abs(told - slowed) for slowed, told in sides)

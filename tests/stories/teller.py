@@ -41,7 +41,7 @@ _OFTEN: dict[Point, float] = {
 }
 """Probabilities at points that are passed often."""
 _SOMETIMES = 0.15
-_KNOWN_SEED, _KNOWN_S = 0, 40.0
+_KNOWN_SEED, _KNOWN_S = -1, 40.0  # of a story of that seed the commands would be those of before
 
 
 @dataclass
