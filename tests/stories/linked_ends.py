@@ -56,8 +56,6 @@ class LinkedEnds(ABC, Generic[SettingsT]):
         self.on_heard: Callable[[int, float], None] = lambda _id, _at_s: None
         """Callback with 0 and the time at which the newest readings were made that arrived at the notebook."""
         self._settings, self._injection, self._time, self._chance = settings, injection, injection.time, chance
-        self._waiting = 0
-        """Bytes of the driver that wait to leave the notebook."""
         self._sent = 0
         self._made_s = 0.0
         self._due_s: dict[str, float] = {}
@@ -172,14 +170,7 @@ class LinkedEnds(ABC, Generic[SettingsT]):
     def _carry_late(self, fault: Fault, way: str, message: bytes, deliver: Deliver) -> None:
         late_s = self._time.now_s() + self._chance.uniform(0.0, 2 * fault.delay_s)
         due_s = self._due_s[way] = min(max(late_s, self._due_s.get(way, 0.0)), fault.end_s)
-        waits = len(message) if way == _OUT else 0
-        self._waiting += waits
-
-        def arrive() -> None:
-            self._waiting -= waits
-            deliver(message)
-
-        self._time.at(due_s, arrive)
+        self._time.at(due_s, partial(deliver, message))
 
 
 class _Port:
@@ -187,13 +178,10 @@ class _Port:
 
     name = "line of a story"
 
-    def __init__(self, write: Deliver, check: Callable[[], int]) -> None:
-        """`check`: returns the bytes that wait to leave, or raises BusError."""
+    def __init__(self, write: Deliver, check: Callable[[], None]) -> None:
+        """`check`: raises BusError while the line is lost."""
+        self.waiting = 0
         self._arrived, self._write, self._check = b"", write, check
-
-    @property
-    def waiting(self) -> int:
-        return self._check()
 
     def arrive(self, data: bytes) -> None:
         self._arrived += data
@@ -223,7 +211,7 @@ class SerialEnds(LinkedEnds[RobotSettings]):
 
     def __init__(self, settings: RobotSettings, injection: FaultInjection, chance: random.Random) -> None:
         super().__init__(settings, injection, chance)
-        self._robots_port = _Port(lambda line: self._report("line", line, self._drivers_port.arrive), lambda: 0)
+        self._robots_port = _Port(lambda line: self._report("line", line, self._drivers_port.arrive), lambda: None)
         self._drivers_port = _Port(self._send, self._check)
 
     def simulated(self, world: WorldSettings, seed: int, wheels: Wheels) -> SimulatedRobot:
@@ -235,10 +223,20 @@ class SerialEnds(LinkedEnds[RobotSettings]):
         sensors, first = len(self._settings.infrared.sensors), self._chance.randrange(NUMBERS)
         return LinkedRobot(self._settings, SchoolLink(self._drivers_port, sensors, first), self._time.now_s)
 
-    def _check(self) -> int:
+    def _check(self) -> None:
         if self.back_at_s:
             raise BusError("the adapter is gone", where=_Port.name, do="plug it in")
-        return self._waiting
+
+    def _carry_late(self, fault: Fault, way: str, message: bytes, deliver: Deliver) -> None:
+        """Deliver a late message; one to the robot waits in the notebook."""
+        port, size = self._drivers_port, len(message) if way == _OUT else 0
+        port.waiting += size
+
+        def leave(each: bytes) -> None:
+            port.waiting -= size
+            deliver(each)
+
+        super()._carry_late(fault, way, message, leave)
 
     def _send(self, line: bytes) -> None:
         if line.startswith(b"school "):
