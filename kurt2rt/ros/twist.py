@@ -39,29 +39,19 @@ class Twists:
         forward = _whole_steps((left_m_s + right_m_s) / 2, settings.linear_step_m_s)
         turn = _whole_steps(turn_rad_s, settings.angular_step_rad_s)
         # A turn that is cut off makes the inner side quicker, so the robot may have to drive a step slower.
-        for less_forward, less_turn in ((0, 0), (1, 0), (0, 1), (1, 1)):
-            steps = _reduced(forward, less_forward), _reduced(turn, less_turn)
-            if self._loss_m_s(steps, speeds) < math.inf:
-                return self._twist(steps)
+        tries = [(_reduced(forward, less), _reduced(turn, fewer)) for less, fewer in ((0, 0), (1, 0), (0, 1), (1, 1))]
         # Of sides that turn against each other, a speed that is cut off makes one quicker, by many steps of the turn.
         ahead_m_s, behind_m_s = map(abs, speeds if turn < 0 else speeds[::-1])
-        nearest = [(0, 0)]
-        for each in (forward - 1, forward, forward + 1):
-            forward_m_s = each * settings.linear_step_m_s
+        for steps in (forward, forward - 1, forward + 1):
+            forward_m_s = steps * settings.linear_step_m_s
             most = _whole_steps(min(ahead_m_s - forward_m_s, behind_m_s + forward_m_s), step_m_s)
-            nearest.append((each, max(-most, min(most, turn))))
-        return self._twist(min(nearest, key=lambda steps: self._loss_m_s(steps, speeds)))
-
-    def _twist(self, steps: tuple[int, int]) -> PlaneTwist:
-        forward, turn = steps
-        return PlaneTwist(forward * self._settings.linear_step_m_s, turn * self._settings.angular_step_rad_s)
-
-    def _loss_m_s(self, steps: tuple[int, int], speeds: WheelSpeeds) -> float:
-        """Return by how much both sides are slower than told with a twist in steps; infinite if one is quicker."""
-        sides = list(zip(self.to_wheels(self._twist(steps)), speeds, strict=True))
-        if any(abs(slowed) > abs(told) + _ROUNDING_M_S for slowed, told in sides):
-            return math.inf
-        return sum(abs(told - slowed) for slowed, told in sides)
+            tries.append((steps, max(-most, min(most, turn))))
+        for steps, turn in tries:
+            twist = PlaneTwist(steps * settings.linear_step_m_s, turn * settings.angular_step_rad_s)
+            sides = zip(self.to_wheels(twist), speeds, strict=True)
+            if all(abs(slowed) <= abs(told) + _ROUNDING_M_S for slowed, told in sides):
+                return twist
+        return PlaneTwist(0.0, 0.0)
 
     def to_wheels(self, twist: PlaneTwist) -> WheelSpeeds:
         """Return the wheel speeds of a twist in m/s."""

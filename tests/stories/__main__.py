@@ -94,13 +94,14 @@ def main() -> int:
     seeds = range(words.first, words.first + words.stories)
     in_time = (each for each in seeds if time.monotonic() < ends_s)
     stories = broken = ticks = lessons = starts = 0
-    acted, happened = Counter[str](), Counter[str]()
+    acted, happened, robots = Counter[str](), Counter[str](), Counter[str]()
     for outcome in drive_seeds(in_time, words.seconds, len(os.sched_getaffinity(0))):
         came = outcome.told
         stories += 1
         ticks, lessons, starts = ticks + came.ticks, lessons + came.lessons, starts + came.starts
         acted.update(came.acted)
         happened.update(came.happened)
+        robots[story_of(outcome.seed, words.seconds).robot] += 1
         if outcome.shortest is not None:
             broken += 1
             BROKEN.mkdir(parents=True, exist_ok=True)
@@ -115,6 +116,7 @@ def main() -> int:
         f"{stories} stories in {took_h:.2f} h ({stories / took_h:.0f} an hour): {hours:.1f} hours of a robot, "
         f"{starts} starts, {lessons} lessons, {sum(acted.values())} faults; {broken} stories broke"
     )
+    print(f"robots: {', '.join(f'{robot} {robots[robot]}' for robot in sorted(robots))}")
     never = [f"{target} {kind}" for target, kind in all_kinds() if not acted[f"{target} {kind}"]]
     print(f"never acted: {', '.join(never) or 'none'}")
     print(f"points: {', '.join(f'{point} {happened[point]}' for point in get_args(Point))}")

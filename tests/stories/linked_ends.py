@@ -84,7 +84,7 @@ class LinkedEnds(ABC, Generic[SettingsT]):
         return fault.end_s if fault is not None and fault.kind == "unplugged" else 0.0
 
     def begin(self, fault: Fault) -> None:
-        """Do what a fault does at its beginning: somebody begins to speak."""
+        """Do what a fault does at its beginning: a stranger or a diagnosis begins to speak."""
         if fault.target == self.target and fault.kind in ("stranger", "alarm"):
             self._speak(fault)
 

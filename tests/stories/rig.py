@@ -48,16 +48,11 @@ class Ends(Protocol):
     """Both ends of the link between a robot and its drivers, and the faults between them."""
 
     on_sent: Callable[[int, bytes], None]
-    """Callback with number and payload of each command that the driver sends."""
     on_arrived: Callable[[int, bytes, float], None]
-    """Callback with number, payload and time of arrival of each command that arrives at the robot."""
     on_heard: Callable[[int, float], None]
-    """Callback with identifier and time of each message with readings that arrives at the notebook."""
 
     @property
-    def wire(self) -> Wire:
-        """Form of the messages."""
-        ...
+    def wire(self) -> Wire: ...
 
     @property
     def back_at_s(self) -> float:
@@ -76,17 +71,11 @@ class Ends(Protocol):
         """End a driver that does not even brake."""
         ...
 
-    def begin(self, fault: Fault) -> None:
-        """Do what a fault does at its beginning."""
-        ...
+    def begin(self, fault: Fault) -> None: ...
 
-    def finish(self, fault: Fault) -> None:
-        """Do what a fault does at its end."""
-        ...
+    def finish(self, fault: Fault) -> None: ...
 
-    def close(self) -> None:
-        """Close the robot's end."""
-        ...
+    def close(self) -> None: ...
 
 
 class CanEnds(EndFaults):

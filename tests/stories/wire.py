@@ -1,4 +1,4 @@
-"""What robots are told, read from the bytes that are sent to them, by code that shares nothing with the codecs."""
+"""Commands to robots, read from the bytes that are sent to them, by code that shares nothing with the codecs."""
 
 import math
 import struct
