@@ -5,7 +5,6 @@ from abc import ABC, abstractmethod
 from binascii import crc_hqx
 from collections.abc import Callable
 from functools import partial
-from typing import Generic, TypeVar
 
 from hal.bus import BusError
 from hal.guarded_robot import GuardedRobot
@@ -30,7 +29,6 @@ from tests.stories.table import Fault, Target
 from tests.stories.wire import Wire
 
 Deliver = Callable[[bytes], None]
-SettingsT = TypeVar("SettingsT", bound=RobotSettings)
 
 _OUT = "out"
 """Way of the driver's commands; the others are those of the robot's readings."""
@@ -38,17 +36,18 @@ _SHARE = 0.3
 """Share of the messages that a poor link loses, doubles, garbles or lets change places."""
 _SPEAKS_EVERY_S = 0.05
 _MOST_GARBAGE = 60
+_LONGER_THAN_ODOMETRY = 1000
 _WALL_S = 1e9
 """Wall clock at the beginning of simulated time; a stamp of 0 would mean none."""
 
 
-class LinkedEnds(ABC, Generic[SettingsT]):
+class LinkedEnds(ABC):
     """Base of both. A late message does not overtake; what the driver sends is neither doubled nor reordered."""
 
     target: Target
     wire: Wire
 
-    def __init__(self, settings: SettingsT, injection: FaultInjection, chance: random.Random) -> None:
+    def __init__(self, settings: RobotSettings, injection: FaultInjection, chance: random.Random) -> None:
         self.on_sent: Callable[[int, bytes], None] = lambda _number, _payload: None
         """Callback with number and payload of each command that the driver sends."""
         self.on_arrived: Callable[[int, bytes, float], None] = lambda _number, _payload, _at_s: None
@@ -71,12 +70,6 @@ class LinkedEnds(ABC, Generic[SettingsT]):
     def start_driver(self) -> GuardedRobot:
         """Return a new driver at the notebook's end."""
 
-    def kill_driver(self) -> None:
-        """Do nothing: without its program a driver sends nothing."""
-
-    def close(self) -> None:
-        """Do nothing: this link is in memory."""
-
     @property
     def back_at_s(self) -> float:
         """Time from which on a program can start."""
@@ -89,7 +82,11 @@ class LinkedEnds(ABC, Generic[SettingsT]):
             self._speak(fault)
 
     def finish(self, fault: Fault) -> None:
-        """Do what a fault does at its end."""
+        """Do what a fault does at its end: what was held back arrives."""
+        if fault.target == self.target:
+            for arrive in self._held.values():
+                arrive()
+            self._held.clear()
 
     @abstractmethod
     def _say(self, fault: Fault, *, over: bool) -> None:
@@ -203,7 +200,7 @@ class _Port:
         """Do nothing: the line is in memory."""
 
 
-class SerialEnds(LinkedEnds[RobotSettings]):
+class SerialEnds(LinkedEnds):
     """Ends of the serial line of a school robot."""
 
     target = "serial"
@@ -292,7 +289,7 @@ class _Topics(LocalTopics):
             self._send(key, payload)
 
 
-class TopicEnds(LinkedEnds[TurtlebotSettings]):
+class TopicEnds(LinkedEnds):
     """Ends of the topics of a base."""
 
     target = "topics"
@@ -300,7 +297,7 @@ class TopicEnds(LinkedEnds[TurtlebotSettings]):
 
     def __init__(self, settings: TurtlebotSettings, injection: FaultInjection, chance: random.Random) -> None:
         super().__init__(settings, injection, chance)
-        self._step_s = 0.0
+        self._base, self._step_s = settings, 0.0
         self._robots_clock = _Clock(self._time.now_s, lambda: self._step_s)
         self._drivers_clock = _Clock(self._time.now_s, injection.wall_clock_step_s)
         self._twists = Twists(settings.twist, settings)
@@ -308,15 +305,15 @@ class TopicEnds(LinkedEnds[TurtlebotSettings]):
         self._drivers_topics = _Topics(settings, self._send)
 
     def simulated(self, world: WorldSettings, seed: int, wheels: Wheels) -> SimulatedRobot:
-        electronics = TurtlebotElectronics(self._settings, self._robots_topics.join(), self._robots_clock)
-        return SimulatedRobot(self._settings, world, lambda *_: electronics, seed, wheels=wheels, make_sensors=lidar_of)
+        electronics = TurtlebotElectronics(self._base, self._robots_topics.join(), self._robots_clock)
+        return SimulatedRobot(self._base, world, lambda *_: electronics, seed, wheels=wheels, make_sensors=lidar_of)
 
     def start_driver(self) -> GuardedRobot:
-        self._drivers_topics = _Topics(self._settings, self._send)
+        self._drivers_topics = _Topics(self._base, self._send)
         fault = self._injection.acting_on(self.target)
         self._drivers_topics.connected = fault is None or fault.kind != "off"
-        link = TurtlebotLink(self._settings, self._drivers_topics.join(), "topics of a story", self._drivers_clock)
-        return LinkedRobot(self._settings, link, self._time.now_s)
+        link = TurtlebotLink(self._base, self._drivers_topics.join(), "topics of a story", self._drivers_clock)
+        return LinkedRobot(self._base, link, self._time.now_s)
 
     def begin(self, fault: Fault) -> None:
         super().begin(fault)
@@ -325,6 +322,7 @@ class TopicEnds(LinkedEnds[TurtlebotSettings]):
             self._step_s = self._chance.choice((-1, 1)) * fault.delay_s if fault.kind == "stamps" else 0.0
 
     def finish(self, fault: Fault) -> None:
+        super().finish(fault)
         if fault.target == self.target:
             self._drivers_topics.connected, self._step_s = True, 0.0
 
@@ -335,7 +333,7 @@ class TopicEnds(LinkedEnds[TurtlebotSettings]):
         self._report(key, payload, partial(self._drivers_topics.carry, key))
 
     def _say(self, fault: Fault, *, over: bool) -> None:
-        ros, stamp_s = self._settings.ros, self._robots_clock.wall_s()
+        ros, stamp_s = self._base.ros, self._robots_clock.wall_s()
         if fault.kind == "alarm":
             level = DiagnosticStatus.OK if over else DiagnosticStatus.ERROR
             status = DiagnosticStatus(level, f"{ros.stops_on_errors_of[0]}_motor", "too hot", "", [])
@@ -358,4 +356,4 @@ class TopicEnds(LinkedEnds[TurtlebotSettings]):
         return message[:12] + old[12:] if self._has_ranges(message) else message  # CDR's header and the stamp
 
     def _has_ranges(self, message: bytes) -> bool:
-        return message[20:29] == b"base_scan" or len(message) > 1000
+        return len(message) > _LONGER_THAN_ODOMETRY

@@ -1,8 +1,7 @@
 """Simulated robot, its link and drivers in simulated time, with faults between them."""
 
 import random
-from collections.abc import Callable, Mapping
-from typing import Protocol
+from collections.abc import Mapping
 
 from hal.bus import CONTROL_ID, CanBus
 from hal.codec import load_codec
@@ -21,8 +20,8 @@ from tests.stories.fault import FaultInjection, SimulatedTime
 from tests.stories.faulty_cable import EndFaults
 from tests.stories.linked_ends import SerialEnds, TopicEnds
 from tests.stories.motors import FaultyWheels
-from tests.stories.table import Fault, RobotKind
-from tests.stories.wire import KURT2, Wire
+from tests.stories.table import RobotKind
+from tests.stories.wire import KURT2
 
 ROBOT: Kurt2Settings = load_kurt2()
 ROBOTS: Mapping[RobotKind, RobotSettings] = {
@@ -42,40 +41,6 @@ CORRIDOR = WorldSettings(
     start_poses=(StartPoseSettings(x_m=1.5, y_m=_WIDTH_M - _HALF_WIDTH_M - _WALL_AT_M, heading_deg=0.0),),
 )
 """Corridor with one constant situation, so that a standstill is due to the fault."""
-
-
-class Ends(Protocol):
-    """Both ends of the link between a robot and its drivers, and the faults between them."""
-
-    on_sent: Callable[[int, bytes], None]
-    on_arrived: Callable[[int, bytes, float], None]
-    on_heard: Callable[[int, float], None]
-
-    @property
-    def wire(self) -> Wire: ...
-
-    @property
-    def back_at_s(self) -> float:
-        """Time from which on a program can start, in s; it needs its adapter."""
-        ...
-
-    def simulated(self, world: WorldSettings, seed: int, wheels: Wheels) -> SimulatedRobot:
-        """Return the robot at its end."""
-        ...
-
-    def start_driver(self) -> GuardedRobot:
-        """Return a new driver at the notebook's end, like that of a new process."""
-        ...
-
-    def kill_driver(self) -> None:
-        """End a driver that does not even brake."""
-        ...
-
-    def begin(self, fault: Fault) -> None: ...
-
-    def finish(self, fault: Fault) -> None: ...
-
-    def close(self) -> None: ...
 
 
 class CanEnds(EndFaults):
@@ -113,6 +78,9 @@ class CanEnds(EndFaults):
 
     def close(self) -> None:
         self._robots_bus.shutdown()
+
+
+Ends = CanEnds | SerialEnds | TopicEnds
 
 
 def _ends_of(settings: RobotSettings, injection: FaultInjection, chance: random.Random) -> Ends:
@@ -153,10 +121,10 @@ class Rig:
 
     def end_driver(self, *, killed: bool = False) -> None:
         """End the driver; one that was `killed` sends nothing any more."""
-        if self.robot is not None and killed:
-            self.ends.kill_driver()
-        elif self.robot is not None:
+        if self.robot is not None and not killed:
             self.robot.close()
+        elif self.robot is not None and isinstance(self.ends, CanEnds):
+            self.ends.kill_driver()  # others send nothing without their program
         self.robot = None
 
     def attach_tap(self, tap: Tap | None) -> None:
@@ -174,7 +142,8 @@ class Rig:
 
     def close(self) -> None:
         self.end_driver()
-        self.ends.close()
+        if isinstance(self.ends, CanEnds):
+            self.ends.close()
 
     def _step(self) -> None:
         self.simulation.step()
