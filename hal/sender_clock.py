@@ -94,7 +94,7 @@ class SenderClock:
         self._rival = None
         if offset_s < course.offset_s - self._slack_s and stamp_s <= self._sudden_s:
             self._sudden_s = stamp_s  # the next message tells whether a queue emptied or this one lies
-            return delay_s
+            return max(delay_s, offset_s - course.agreed_s)
         self._sudden_s = math.inf
         return course.add(stamp_s, arrival_s)
 

@@ -122,6 +122,8 @@ def test_sender_clock_that_agrees_tells_the_age_itself() -> None:
     sender = SenderClock(DRIFT, SLACK_S, agreed_offset_s=-500.0)
     assert sender.age_s(600.0, 100.4) == pytest.approx(0.4)
     assert sender.age_s(600.2, 100.5) == pytest.approx(0.3, abs=1e-4)
+    assert sender.age_s(600.4, 101.1) == pytest.approx(0.7, abs=1e-4)
+    assert sender.age_s(600.6, 101.1) == pytest.approx(0.5, abs=1e-4)  # it came much sooner than the one before
 
 
 @pytest.mark.parametrize("apart_s", [-5.0, -0.1, 1.1, 5.0])
