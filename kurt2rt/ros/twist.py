@@ -41,11 +41,12 @@ class Twists:
         # A turn that is cut off makes the inner side quicker, so the robot may have to drive a step slower.
         tries = [(_reduced(forward, less), _reduced(turn, fewer)) for less, fewer in ((0, 0), (1, 0), (0, 1), (1, 1))]
         # Of sides that turn against each other, a speed that is cut off makes one quicker, by many steps of the turn.
-        ahead_m_s, behind_m_s = map(abs, speeds if turn < 0 else speeds[::-1])
+        ahead_m_s, behind_m_s = map(abs, speeds if turn_rad_s < 0 else speeds[::-1])
         for steps in (forward, forward - 1, forward + 1):
             forward_m_s = steps * settings.linear_step_m_s
             most = _whole_steps(min(ahead_m_s - forward_m_s, behind_m_s + forward_m_s), step_m_s)
-            tries.append((steps, max(-most, min(most, turn))))
+            most = min(most, abs(turn) + 1)
+            tries.append((steps, -most if turn_rad_s < 0 else most))
         for steps, turn in tries:
             twist = PlaneTwist(steps * settings.linear_step_m_s, turn * settings.angular_step_rad_s)
             sides = zip(self.to_wheels(twist), speeds, strict=True)

@@ -143,7 +143,7 @@ def test_applied_speeds_are_never_above_the_given_ones(wire: Wire) -> None:
 
 def test_side_that_turns_round_does_not_brake_the_other(wire: Wire) -> None:
     """A spin begins with one side that is quicker than the other; the base stuttered between the brake and 0.08 m/s."""
-    for right_mm_s in range(0, -80, -1):
+    for right_mm_s in (0.05, *range(0, -80, -1)):
         applied = wire.link.applied(WheelSpeeds(0.08, right_mm_s / 1000))
         assert applied.left_m_s >= 0.06
 
