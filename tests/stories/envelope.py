@@ -111,7 +111,7 @@ class Envelope:
                 # The first step after a brake may be the longest, two cycles, and may be one of those that were lost.
                 elapsed_s = max(elapsed_s + longest_s / 2, longest_s)
             elif self.clock_is_faulty:
-                elapsed_s = max(elapsed_s, longest_s)
+                elapsed_s = max(elapsed_s, longest_s * (number - self._arrived_number))
             # A stop may be among frames that were lost on the way: it is free, and what comes after it may turn round.
             # A robot that heard nothing for so long stands by itself.
             rested = at_s - self._arrived_at_s >= self._limits.controller_watchdog_s

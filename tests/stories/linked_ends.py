@@ -189,8 +189,8 @@ class _Port:
         return arrived
 
     def write(self, data: bytes) -> None:
+        self._write(data)  # it is judged, and lost if the line is
         self._check()
-        self._write(data)
 
     def reopen(self) -> None:
         self._check()
@@ -285,7 +285,7 @@ class _Topics(LocalTopics):
         """Send what this end's program publishes; deliver what comes from elsewhere."""
         if sender is None:
             super().carry(key, payload)
-        elif self.connected:
+        else:
             self._send(key, payload)
 
 
