@@ -50,7 +50,7 @@ class Cable:
 
     def carry(self, frame: can.Message, sender: "CableInterface") -> None:
         """Deliver a copy of a frame to every end; the sender gets it once, as its confirmation."""
-        at_s = self._arrival_s()
+        at_s = self._arrival_s() if self._faults.delay_s else self.now_s()
         for end in self._ends:
             if is_heard(frame, end.accepted_ids) and (end is sender or not self._is_lost()):
                 end.deliver(frame, at_s, own=end is sender)
@@ -64,11 +64,9 @@ class Cable:
         return self._faults.lost > 0.0 and self._chance.random() < self._faults.lost
 
     def _arrival_s(self) -> float:
-        if self._faults.delay_s:
-            at_s = self.now_s() + self._chance.uniform(0.0, self._faults.delay_s)
-            self._carried_at_s = max(self._carried_at_s, at_s)
-            return self._carried_at_s
-        return self.now_s()
+        at_s = self.now_s() + self._chance.uniform(0.0, self._faults.delay_s)
+        self._carried_at_s = max(self._carried_at_s, at_s)
+        return self._carried_at_s
 
 
 class CableInterface:

@@ -11,7 +11,7 @@ from hal.codec import Codec
 from hal.frame import Frame
 from tests.stories.cable import Cable, CableInterface
 from tests.stories.fault import FaultInjection
-from tests.stories.table import Fault, Kind, Target
+from tests.stories.table import Fault, Target
 
 Deliver = Callable[[Frame], None]
 
@@ -60,7 +60,8 @@ class _NotebooksEnd(CableInterface):
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
         """Send a frame through the driver, or later. Raises OSError if the adapter is gone."""
-        self._check_plugged()
+        self._faults.require_plugged()
+        self._check_open()
         self._faults.carry_from_notebook(Frame(msg.arbitration_id, bytes(msg.data)), self.send_if_open)
 
     def deliver(self, frame: can.Message, at_s: float, *, own: bool) -> None:
@@ -85,13 +86,8 @@ class _NotebooksEnd(CableInterface):
 
     def recv(self, timeout: float | None = None) -> can.Message | None:
         """Return the oldest frame or None. Raises can.CanOperationError if the adapter is gone."""
-        self._check_plugged()
+        self._faults.require_plugged()
         return super().recv(timeout)
-
-    def _check_plugged(self) -> None:
-        self._check_open()
-        if self._faults.is_unplugged:
-            raise can.CanOperationError("the adapter is gone")
 
     def hear(self, frame: Frame) -> None:
         """Receive a frame of another node; no receiver can tell who sent it."""
@@ -116,6 +112,10 @@ class EndFaults:
         """Callback with identifier and time of each frame that arrives at the notebook."""
         self.carried = 0
         """Number of the newest CONTROL that the cable carried."""
+        self.is_off = False
+        """True while the notebook's CAN controller is off the bus: it hears nothing, and what it sends stays in it."""
+        self.is_unplugged = False
+        """True while the notebook has no CAN adapter."""
         self._time, self._injection = injection.time, injection
         self._codec, self._chance = codec, chance
         self._board_of: dict[int, Target] = {
@@ -164,18 +164,9 @@ class EndFaults:
             self._newest.clear()
         return True
 
-    @property
-    def is_off(self) -> bool:
-        """True while the notebook's CAN controller is off the bus: it hears nothing, and what it sends stays in it."""
-        return self._controller_is("bus_off")
-
-    @property
-    def is_unplugged(self) -> bool:
-        """True while the notebook has no CAN adapter."""
-        return self._controller_is("unplugged")
-
     def begin(self, fault: Fault) -> None:
         """Do what a fault does at its beginning: a controller leaves the bus, a stranger begins to send."""
+        self._set_controller(fault, acts=True)
         if fault.kind == "bus_off" and self._end is not None:
             self._end.tell_error(_BUS_OFF)
         if fault.target == "stranger":
@@ -183,8 +174,19 @@ class EndFaults:
 
     def finish(self, fault: Fault) -> None:
         """Do what a fault does at its end: a controller comes back to the bus."""
+        self._set_controller(fault, acts=False)
         if fault.kind == "bus_off" and self._end is not None:
             self._end.tell_error(_RESTARTED)
+
+    def require_plugged(self) -> None:
+        """Raise can.CanOperationError while the adapter is gone."""
+        if self.is_unplugged:
+            raise can.CanOperationError("the adapter is gone")
+
+    def _set_controller(self, fault: Fault, *, acts: bool) -> None:
+        if fault.target == "controller":
+            self.is_off, self.is_unplugged = acts and fault.kind == "bus_off", acts and fault.kind == "unplugged"
+            self._injection.acted.add(fault)
 
     def _send_as_stranger(self, fault: Fault) -> None:
         """Send what only the robot should send, or anything, until the fault is over."""
@@ -198,10 +200,6 @@ class EndFaults:
             self._end.hear(Frame(chance.randrange(0x100, 0x800), chance.randbytes(chance.randrange(9))))
         self._injection.acted.add(fault)
         self._time.at(now_s + _STRANGER_EVERY_S, lambda: self._send_as_stranger(fault))
-
-    def _controller_is(self, kind: Kind) -> bool:
-        fault = self._injection.acting_on("controller")
-        return fault is not None and fault.kind == kind
 
     def carry_from_board(self, frame: Frame, send: Deliver) -> None:
         """Carry a frame of a board of the robot."""
