@@ -83,8 +83,10 @@ class Rules:
             # An action that a teacher taught by mistake may be to stand.
             acts = record.decision.driving and _LIMITS.issuperset(record.guard_result.reasons)
             self._works = now_s >= over_s and (self._works or acts or record.decision.cause in ASKING)
-        if moves and story.teaching.phase < AUTONOMOUS and now_s - heard_at_s > _SILENT_S:
-            silent_s = now_s - heard_at_s
+        silent_s = now_s - heard_at_s
+        # A lease counts by the program's clock, which may run at half speed.
+        longest_s = _SILENT_S * (2 if any(str(fault) == "clock slow" for fault in self.begun) else 1)
+        if moves and story.teaching.phase < AUTONOMOUS and silent_s > longest_s:
             self.problems.append(f"at {now_s:.2f} s: it drives {silent_s:.2f} s after its teachers' last message")
         if moves and story.teaching.phase < AUTONOMOUS and self._device.judge.picture_ticks > _PICTURE_TICKS:
             self.problems.append(f"at {now_s:.2f} s: it drives, unseen for {_PICTURE_TICKS} ticks")
