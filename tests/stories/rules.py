@@ -117,7 +117,7 @@ class Rules:
         if witness.slowest_m_s(from_s, until_s) < witness.limits.shows_m_s:
             return
         # If it is not reached, the robot's own watchdog makes it stand.
-        is_long = fault.end_s - fault.begin_s >= TABLE.envelope.controller_watchdog_s
+        is_long = fault.end_s - fault.begin_s >= witness.limits.controller_watchdog_s
         if is_long and not witness.standstills(fault.begin_s, fault.end_s):
             self.problems.append(f"{fault}: it did not stand")
         latched = witness.latched
