@@ -8,7 +8,10 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.ros.messages import Header, InvalidMessageError, Message, Twist, TwistStamped, Vector3, to_time
 from kurt2rt.ros.twist_settings import TwistSettings
 
-_ROUNDING_M_S = 1e-4
+_FEWER_STEPS = 2
+"""Steps by which the robot may drive slower or faster than the sides' mean, where only so both sides fit."""
+_ROUNDING = 0.001
+"""Share of a step by which a speed is short of it by rounding alone."""
 
 
 class PlaneTwist(NamedTuple):
@@ -25,6 +28,8 @@ class Twists:
         """Take the distance of the wheels and the highest speed from `robot`."""
         self._settings, self._half_track_m = settings, robot.geometry.effective_track_m / 2
         self._fastest_m_s = robot.motors.maximum_speed_m_s
+        self._turn_step_m_s = settings.angular_step_rad_s * self._half_track_m
+        self._most_turn = math.floor(settings.maximum_rad_s / settings.angular_step_rad_s + _ROUNDING)
 
     @property
     def message_class(self) -> type[Message]:
@@ -32,27 +37,29 @@ class Twists:
         return TwistStamped if self._settings.stamped else Twist
 
     def of_wheels(self, speeds: WheelSpeeds) -> PlaneTwist:
-        """Return the twist of finite set points in m/s, in whole steps; no side is quicker than it was told to be."""
-        settings, (left_m_s, right_m_s) = self._settings, speeds
-        most_rad_s, step_m_s = settings.maximum_rad_s, settings.angular_step_rad_s * self._half_track_m
-        turn_rad_s = max(-most_rad_s, min(most_rad_s, (right_m_s - left_m_s) / 2 / self._half_track_m))
-        forward = _whole_steps((left_m_s + right_m_s) / 2, settings.linear_step_m_s)
-        turn = _whole_steps(turn_rad_s, settings.angular_step_rad_s)
-        # A turn that is cut off makes the inner side quicker, so the robot may have to drive a step slower.
-        tries = [(_reduced(forward, less), _reduced(turn, fewer)) for less, fewer in ((0, 0), (1, 0), (0, 1), (1, 1))]
-        # Of sides that turn against each other, a speed that is cut off makes one quicker, by many steps of the turn.
-        ahead_m_s, behind_m_s = map(abs, speeds if turn_rad_s < 0 else speeds[::-1])
-        for steps in (forward, forward - 1, forward + 1):
-            forward_m_s = steps * settings.linear_step_m_s
-            most = _whole_steps(min(ahead_m_s - forward_m_s, behind_m_s + forward_m_s), step_m_s)
-            most = min(most, abs(turn) + 1)
-            tries.append((steps, -most if turn_rad_s < 0 else most))
-        for steps, turn in tries:
-            twist = PlaneTwist(steps * settings.linear_step_m_s, turn * settings.angular_step_rad_s)
-            sides = zip(self.to_wheels(twist), speeds, strict=True)
-            if all(abs(slowed) <= abs(told) + _ROUNDING_M_S for slowed, told in sides):
-                return twist
-        return PlaneTwist(0.0, 0.0)
+        """Return the nearest twist to finite set points in m/s, in whole steps; no side is quicker than it was told.
+
+        A side may turn round by less than one step of the turn, because few twists let it rest.
+        """
+        settings, turn_step_m_s = self._settings, self._turn_step_m_s
+        (left_low, left_high), (right_low, right_high) = (_allowed_m_s(each, turn_step_m_s) for each in speeds)
+        wanted_turn = round((speeds.right_m_s - speeds.left_m_s) / 2 / turn_step_m_s)
+        wanted_forward = round((speeds.left_m_s + speeds.right_m_s) / 2 / settings.linear_step_m_s)
+        nearest, least_m_s = PlaneTwist(0.0, 0.0), math.inf
+        for forward in range(wanted_forward - _FEWER_STEPS, wanted_forward + _FEWER_STEPS + 1):
+            forward_m_s = forward * settings.linear_step_m_s
+            low_m_s = max(forward_m_s - left_high, right_low - forward_m_s)
+            high_m_s = min(forward_m_s - left_low, right_high - forward_m_s)
+            low = max(math.ceil(low_m_s / turn_step_m_s - _ROUNDING), -self._most_turn)
+            high = min(math.floor(high_m_s / turn_step_m_s + _ROUNDING), self._most_turn)
+            if low > high:
+                continue
+            turn = max(low, min(high, wanted_turn))
+            twist = PlaneTwist(forward_m_s, turn * settings.angular_step_rad_s)
+            off_m_s = sum(abs(got - told) for got, told in zip(self.to_wheels(twist), speeds, strict=True))
+            if off_m_s < least_m_s:
+                nearest, least_m_s = twist, off_m_s
+        return nearest
 
     def to_wheels(self, twist: PlaneTwist) -> WheelSpeeds:
         """Return the wheel speeds of a twist in m/s."""
@@ -81,10 +88,7 @@ class Twists:
         )
 
 
-def _whole_steps(value: float, step: float) -> int:
-    """Return a value towards 0 in whole steps; one that is short of a step by rounding alone counts as a step."""
-    return math.trunc(value / step + math.copysign(0.001, value))
-
-
-def _reduced(steps: int, by: int) -> int:
-    return steps - by if steps > 0 else min(0, steps + by)
+def _allowed_m_s(told_m_s: float, step_m_s: float) -> tuple[float, float]:
+    """Return the lowest and the highest speed of a side that was told to turn so fast, in m/s."""
+    back_m_s = min(abs(told_m_s), step_m_s)
+    return (-back_m_s, told_m_s) if told_m_s >= 0.0 else (told_m_s, back_m_s)
