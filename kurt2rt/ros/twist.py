@@ -56,7 +56,8 @@ class Twists:
                 continue
             turn = max(low, min(high, wanted_turn))
             twist = PlaneTwist(forward_m_s, turn * settings.angular_step_rad_s)
-            off_m_s = sum(abs(got - told) for got, told in zip(self.to_wheels(twist), speeds, strict=True))
+            got = self.to_wheels(twist)
+            off_m_s = abs(got.left_m_s - speeds.left_m_s) + abs(got.right_m_s - speeds.right_m_s)
             if off_m_s < least_m_s:
                 nearest, least_m_s = twist, off_m_s
         return nearest

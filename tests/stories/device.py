@@ -53,10 +53,9 @@ class Device:
         self._tasks: set[asyncio.Task[None]] = set()
 
     def connect(self, handler: RequestHandler, boot: bytes) -> None:
-        """Talk to another start of the program."""
+        """Talk to another start of the program, which is asked again what the one before did not answer."""
         self._handler, self._boot, self._tick = handler, boot, 0
         self.judge.begin_program(boot)
-        self.forget()
 
     def forget(self) -> None:
         """Forget the commands without an answer, as a page does that dies."""

@@ -53,8 +53,8 @@ def told_by_a_process(file: Path, environment: dict[str, str]) -> str:
     return subprocess.run(words, env=os.environ | environment, capture_output=True, text=True, check=True).stdout
 
 
-def test_a_story_ends_equal_in_other_processes_and_on_another_processor(tmp_path: Path) -> None:
-    """This process has told others before."""
+def test_a_story_ends_equal_on_another_processor(tmp_path: Path) -> None:
+    """And in a process that has told others before."""
     story, file, folder = story_of(5, SHORT_S), tmp_path / "story.yaml", tmp_path / "here"
     file.write_text(as_text(story), encoding="utf-8")
     folder.mkdir()
