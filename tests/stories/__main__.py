@@ -26,7 +26,7 @@ from tests.stories.teller import Told, tell
 BROKEN = Path("var/stories")
 _MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 """Folder in memory, where a disk is faster than simulated time."""
-_TELLS_EVERY = 500
+_TELLS_EVERY = 100
 _SECONDS_PER_HOUR, _TICKS_PER_S = 3600.0, 100
 
 
