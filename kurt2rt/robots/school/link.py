@@ -28,6 +28,8 @@ _SLACK_S = 0.03
 """Jitter of a line: a tick, and the 16 ms for which a USB adapter collects bytes."""
 _LATEST_COMMANDS = 1000
 """Own commands, 10 s of them, among which the robot's last one has to be."""
+_MOST_BEHIND = 20
+"""Own commands by which the robot may be behind, 0.2 s of them: its own watchdog waits as long for the next one."""
 _COMMAND_BYTES = len(lines.encode(lines.DRIVE, lines.NUMBERS - 1, 100, 100))
 _FASTEST_TICKS_MS = 6
 """Three times the ticks of the robot's highest speed in 1 ms: if there were more, the counters began again."""
@@ -58,6 +60,8 @@ class SchoolLink:
         """Valid lines before the greeting."""
         self._last: tuple[int, int, int] | None = None
         """Milliseconds, from any start and unbounded, and ticks of the last line."""
+        self._behind = 0
+        """Own commands since the one that the robot had obeyed when it sent its newest line."""
         self._clock = SenderClock(_CLOCK_ERROR, _SLACK_S)
         self._jumps = 0
 
@@ -68,8 +72,8 @@ class SchoolLink:
 
     @property
     def unconfirmed(self) -> int:
-        """Own lines that wait to leave this machine."""
-        return -(-self._port.waiting // _COMMAND_BYTES)
+        """Own lines that wait to leave this machine, or that the robot obeys too late."""
+        return max(-(-self._port.waiting // _COMMAND_BYTES), self._behind - _MOST_BEHIND)
 
     def receive(self, now_s: float) -> Sequence[Report]:
         """Return all reports that arrived, oldest first; `now_s` on the runtime's clock.
@@ -120,7 +124,8 @@ class SchoolLink:
             self._note_command(self._lines.write(lines.BRAKE))
 
     def forget_unconfirmed(self) -> None:
-        """Do nothing: the operating system counts the bytes that wait."""
+        """Let the robot's next line tell again how late it obeys; the operating system counts the bytes that wait."""
+        self._behind = 0
 
     def reopen(self) -> None:
         """Open the line again and expect a new greeting. Raises hal.bus.BusError while it is still lost."""
@@ -148,6 +153,7 @@ class SchoolLink:
         time_ms = last_ms + difference(time_ms, last_ms)
         behind = (self._last_command - command) % lines.NUMBERS
         knows = command != lines.NO_COMMAND and behind <= _LATEST_COMMANDS
+        self._behind = behind if knows else 0
         answer_s = now_s - self._sent_s[command % len(self._sent_s)] if knows else math.inf
         possible = 0 <= min(counts) <= max(counts) <= HIGHEST_COUNTS
         age_s = self._clock.age_s(time_ms / 1000, now_s, answer_s) if possible else None

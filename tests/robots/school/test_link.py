@@ -2,6 +2,7 @@
 
 import math
 import time
+from collections import deque
 
 import pytest
 
@@ -66,6 +67,23 @@ def test_link_impossible_line_is_junk(numbers: tuple[int, ...]) -> None:
     far.write("sense", *numbers)
     assert far.link.receive(1.0) == []
     assert far.link.junk == 1
+
+
+@pytest.mark.parametrize(("late_s", "stops"), [(0.1, False), (0.25, True)])
+def test_robot_that_obeys_late_is_stopped_for_good(late_s: float, stops: bool) -> None:
+    """Its readings are fresh: only the way of the commands is slow."""
+    rig = MemoryRig()
+    assert rig.run(1.0).wheel_speeds == FORWARD
+    slow: deque[bytes] = deque()
+    inward, rig.line.port._outward = rig.line.port._outward, slow
+    late: deque[list[bytes]] = deque([[]] * round(late_s / SETTINGS.cycle_s))
+    for _ in range(100):
+        result = rig.tick()
+        late.append(list(slow))
+        slow.clear()
+        inward.extend(late.popleft())
+    assert result.latched is stops
+    assert result.reasons == ((GuardReason.BUS_BLOCKED,) if stops else ())
 
 
 def test_link_command_of_another_program_is_reported() -> None:
