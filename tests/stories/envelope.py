@@ -34,6 +34,8 @@ class Envelope:
         """Set points that exceeded the age limit on arrival at the robot."""
         self.unintelligible = 0
         """Garbled frames that arrived; the robot ignores them."""
+        self.clock_slowness = 1.0
+        """Seconds in one second of the driver's clock, by which a robot without a clock of its own tells ages."""
         self.clock_is_faulty = False
         """True while the driver's clock jumps: each frame may change speed by the longest step."""
         self.bumpers = 0
@@ -75,7 +77,7 @@ class Envelope:
         if (self.bumpers & _FRONT and fastest_m_s > 0.0) or (self.bumpers & _REAR and slowest_m_s < 0.0):
             self._complain(at_s, f"pushes on towards the bumpers {self.bumpers:06b}")
         senses_age_s = at_s - min(self._heard_at_s.values(), default=-math.inf)
-        if not told.standing and senses_age_s > self._limits.senses_age_s + _ROUNDING:
+        if not told.standing and senses_age_s > self._limits.senses_age_s * self.clock_slowness + _ROUNDING:
             self._complain(at_s, f"moves though range sensors were silent for {senses_age_s * 1000:.0f} ms")
         if latched and not told.brake:
             self._complain(at_s, "no brake though the robot is to stay stopped")

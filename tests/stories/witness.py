@@ -18,6 +18,8 @@ from tests.stories.wire import WheelCommand
 REPEATED = ResultCode.REPEATED
 _ROUNDING_S = 1e-6
 _LOOKS_EVERY_S = 0.05
+_SLOWNESS = 2.0
+"""Seconds in one second of a slow clock, also in ages that began while it was slow."""
 _CLOCK_SETTLES_S = 0.1
 """Time after the end of a clock's fault in which it may still jump, back to the truth."""
 _STANDS_M_S = 0.02
@@ -50,7 +52,7 @@ class Witness(RobotProxy):
         self._arrivals: list[tuple[float, WheelCommand]] = []
         self._causes: list[tuple[float, tuple[str, ...]]] = []
         self._watches = False
-        self._sensed_at_s = self._clock_faulty_until_s = 0.0
+        self._sensed_at_s = self._clock_faulty_until_s = self._clock_slow_until_s = 0.0
         self._must_stand = ""
         self._stop_tick, self._newest_press, self._ended_press = -1, -1, -2
         """Tick of the newest stop of a teacher, and ids of hands' presses: the newest, and the newest one before it."""
@@ -78,7 +80,11 @@ class Witness(RobotProxy):
     def sense(self, now_s: float) -> SensorReadings:
         """Return the driver's readings; the age of the next decision counts from this call."""
         self._sensed_at_s = self._time.now_s()
-        if self._rig.injection.of("clock") is not None:
+        clock = self._rig.injection.of("clock")
+        if clock is not None and clock.kind == "slow":
+            self._clock_slow_until_s = self._sensed_at_s + self.limits.controller_watchdog_s
+        self.envelope.clock_slowness = _SLOWNESS if self._sensed_at_s < self._clock_slow_until_s else 1.0
+        if clock is not None:
             self._clock_faulty_until_s = self._sensed_at_s + _CLOCK_SETTLES_S
         self.envelope.clock_is_faulty = self._sensed_at_s < self._clock_faulty_until_s
         readings = super().sense(now_s)
