@@ -60,8 +60,8 @@ class SchoolLink:
         """Valid lines before the greeting."""
         self._last: tuple[int, int, int] | None = None
         """Milliseconds, from any start and unbounded, and ticks of the last line."""
-        self._behind = 0
-        """Own commands since the one that the robot had obeyed when it sent its newest line."""
+        self._late_lines = 0
+        """Lines in a row in which the robot named an old command as the last that it obeyed."""
         self._clock = SenderClock(_CLOCK_ERROR, _SLACK_S)
         self._jumps = 0
 
@@ -72,8 +72,9 @@ class SchoolLink:
 
     @property
     def unconfirmed(self) -> int:
-        """Own lines that wait to leave this machine, or that the robot obeys too late."""
-        return max(-(-self._port.waiting // _COMMAND_BYTES), self._behind - _MOST_BEHIND)
+        """Own lines that wait to leave this machine, or lines in a row by which the robot obeys late."""
+        # One alone tells nothing, and stops nothing: after a silence it names a command of before.
+        return max(-(-self._port.waiting // _COMMAND_BYTES), self._late_lines)
 
     def receive(self, now_s: float) -> Sequence[Report]:
         """Return all reports that arrived, oldest first; `now_s` on the runtime's clock.
@@ -125,7 +126,7 @@ class SchoolLink:
 
     def forget_unconfirmed(self) -> None:
         """Let the robot's next line tell again how late it obeys; the operating system counts the bytes that wait."""
-        self._behind = 0
+        self._late_lines = 0
 
     def reopen(self) -> None:
         """Open the line again and expect a new greeting. Raises hal.bus.BusError while it is still lost."""
@@ -153,7 +154,7 @@ class SchoolLink:
         time_ms = last_ms + difference(time_ms, last_ms)
         behind = (self._last_command - command) % lines.NUMBERS
         knows = command != lines.NO_COMMAND and behind <= _LATEST_COMMANDS
-        self._behind = behind if knows else 0
+        self._late_lines = self._late_lines + 1 if knows and behind > _MOST_BEHIND else 0
         answer_s = now_s - self._sent_s[command % len(self._sent_s)] if knows else math.inf
         possible = 0 <= min(counts) <= max(counts) <= HIGHEST_COUNTS
         age_s = self._clock.age_s(time_ms / 1000, now_s, answer_s) if possible else None

@@ -86,6 +86,17 @@ def test_robot_that_obeys_late_is_stopped_for_good(late_s: float, stops: bool) -
     assert result.reasons == ((GuardReason.BUS_BLOCKED,) if stops else ())
 
 
+def test_robot_drives_on_after_a_silence_of_its_line() -> None:
+    rig = MemoryRig()
+    rig.run(1.0)
+    ways = rig.line.port._inward, rig.line.port._outward
+    rig.line.port._inward, rig.line.port._outward = deque(), deque()
+    assert rig.run(0.5).reasons == (GuardReason.INFRARED_STALE,)
+    rig.line.port._inward, rig.line.port._outward = ways
+    ways[0].clear()
+    assert rig.run(1.0).wheel_speeds == FORWARD
+
+
 def test_link_command_of_another_program_is_reported() -> None:
     far = FarEnd()
     far.link.send(FORWARD)
