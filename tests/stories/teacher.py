@@ -31,6 +31,8 @@ _AWAY_EVERY_S, _AWAY_S = 30.0, 4.0
 _MOST_CORRECTIONS = 100
 _RESUMES_EVERY_S = 1.0
 _STOPS_EVERY_S, _UNDOES_EVERY_S, _SIGNALS_EVERY_S = 45.0, 180.0, 20.0
+_REGRETS = 0.2
+"""Share of resumes after which he says stop at once, which may overtake the resume on the way."""
 _TAKES_EVERY_S = 0.2
 _WATCHES_EVERY_S = 0.1
 
@@ -76,7 +78,10 @@ class StoryTeacher:
         if record.guard_result.latched or record.decision.cause is DecisionCause.STOPPED:
             self._stopped_ticks += 1
             is_due = self._is_due(self._stopped_ticks, _RESUMES_EVERY_S)
-            return [Resume("", TEACHER, record.tick)] if is_due else []
+            if not is_due:
+                return []
+            regrets = not self.is_calm and chance.random() < _REGRETS
+            return [Resume("", TEACHER, record.tick), *([Stop("", TEACHER)] if regrets else [])]
         self._stopped_ticks = 0
         if self._happens(_STOPS_EVERY_S):
             return [Stop("", TEACHER)]
