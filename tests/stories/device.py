@@ -4,6 +4,7 @@ import asyncio
 import itertools
 import math
 import random
+from collections.abc import Iterable
 from dataclasses import fields, replace
 
 from kurt2rt.channel.protocol.codec import decode_request, encode_request
@@ -14,36 +15,43 @@ from kurt2rt.core.message_fields import WireError
 from kurt2rt.core.teaching.commands import Command, Stream
 from tests.stories.channel_judge import ChannelJudge
 from tests.stories.fault import FaultInjection
+from tests.stories.poor_link import PoorLink
+from tests.stories.table import Fault, Target
 
 TEACHER = "eve"
 _AGAIN_S = 0.3
 _MOST_TRIES = 20
-_SHARE = 0.4
-"""Share of the messages that a poor link loses, doubles or repeats later."""
-_OLD_S = 2.0
+_MOST_GARBAGE = 40
 _IDENTITY_BYTES = 8
 _OF_THE_DEVICE = ("command_id", "teacher", "seen_tick")
 """Fields of a command that its device fills in."""
 Message = tuple[int, str, bytes]
 """Sequence number, path and body."""
+Answer = tuple[str, bool]
+"""Id of the command, and whether its lesson is durable."""
 
 
 class Device:
     """Device of one teacher, who sees each tick's state at once.
 
-    Messages enter behind OSCORE, which would refuse copies, so that the rules after it must. off: none arrives.
-    page_dies: nor does the device ask again for what was open. lost: some do not. delayed: late. doubled: some twice.
-    replayed: some again much later. garbage: random bytes.
+    Messages enter behind OSCORE, which would refuse copies, so that the rules after it must; answers take the same way.
+    page_dies: the device does not ask again for what was open. stuck: the last message repeats. garbage: random bytes.
     """
 
-    def __init__(self, injection: FaultInjection, chance: random.Random) -> None:
+    def __init__(
+        self, injection: FaultInjection, chance: random.Random, teacher: str = TEACHER, target: Target = "link"
+    ) -> None:
         self.heard_at_s = -math.inf
         """Time at which the newest message that the robot understood arrived there."""
         self.saved: set[str] = set()
         """Ids of the commands whose lesson the robot said to be durable."""
+        self.refused = 0
+        """Messages that were not understood, or refused."""
         self.judge = ChannelJudge()
         """Judge of what the robot takes of this and other devices."""
-        self._injection, self._time, self._chance = injection, injection.time, chance
+        self._teacher, self._time, self._chance = teacher, injection.time, chance
+        self._link = PoorLink(injection, target, chance, self._instead)
+        self._answers = PoorLink[Answer](injection, target, chance, lambda _fault, answer, _newest: [answer])
         self._numbers = itertools.count(1)
         self._handler: RequestHandler | None = None
         self._boot = b""
@@ -85,7 +93,7 @@ class Device:
         """Send a message of a stream once, a command until it is answered."""
         if isinstance(command, Stream):
             request = StreamRequest(self._boot, replace(command, teacher=""))
-            self._pass((next(self._numbers), command.path, encode_request(request)))
+            self._link.carry((next(self._numbers), command.path, encode_request(request)), self._arrive)
             return
         identity = self._chance.randbytes(_IDENTITY_BYTES)
         own = {each.name: getattr(command, each.name) for each in fields(command) if each.name not in _OF_THE_DEVICE}
@@ -99,29 +107,16 @@ class Device:
             self._open.pop(identity, None)
             return
         self._open[identity] = tries + 1
-        self._pass((next(self._numbers), path, body))
+        self._link.carry((next(self._numbers), path, body), self._arrive)
         self._time.at(self._time.now_s() + _AGAIN_S, lambda: self._try(identity, path, body))
 
-    def _pass(self, message: Message) -> None:
-        """Send a message over the link."""
-        fault, now_s, chance = self._injection.acting_on("link"), self._time.now_s(), self._chance
-        chosen = fault is not None and chance.random() < _SHARE
-        match None if fault is None else fault.kind:
-            case "off" | "page_dies":
-                return
-            case "lost" if chosen:
-                return
-            case "delayed":
-                assert fault is not None
-                self._time.at(now_s + chance.uniform(0.0, 2 * fault.delay_s), lambda: self._arrive(message))
-                return
+    def _instead(self, fault: Fault, message: Message, newest: Message) -> Iterable[Message]:
+        match fault.kind:
             case "garbage":
-                message = (message[0], message[1], chance.randbytes(chance.randint(0, 40)))
-            case "doubled" if chosen:
-                self._arrive(message)
-            case "replayed" if chosen:
-                self._time.at(now_s + chance.uniform(0.0, _OLD_S), lambda: self._arrive(message))
-        self._arrive(message)
+                return [(*message[:2], self._chance.randbytes(self._chance.randint(0, _MOST_GARBAGE)))]
+            case "stuck":
+                return [newest]
+        return [message]
 
     def _arrive(self, message: Message) -> None:
         handler = self._handler
@@ -131,9 +126,12 @@ class Device:
         try:
             request = decode_request(path, body)
         except WireError:
+            self.refused += 1
             return
         self.heard_at_s = self._time.now_s()
-        task = asyncio.get_running_loop().create_task(self._answered(handler, Sender(TEACHER, b"", number), request))
+        task = asyncio.get_running_loop().create_task(
+            self._answered(handler, Sender(self._teacher, b"", number), request)
+        )
         self._tasks.add(task)
         task.add_done_callback(self._on_answered)
 
@@ -146,11 +144,14 @@ class Device:
         tick = handler.tick
         reply: Reply = await handler.answer(sender, request)
         self.judge.on_reply(sender, request, tick, reply)
-        fault = self._injection.acting_on("link")
-        kind = None if fault is None else fault.kind
-        if kind in ("off", "page_dies") or (kind == "lost" and self._chance.random() < _SHARE):
-            return  # the answer is lost, and the command will come again
+        self.refused += reply.status is not ReplyStatus.DONE
         if isinstance(request, TickRequest | StopRequest):
-            self._open.pop(request.command_id.hex(), None)
-            if reply.status is ReplyStatus.DONE and reply.body.get("row") is not None:
-                self.saved.add(f"{TEACHER}-{request.command_id.hex()}")
+            # If the answer is lost, the command comes again.
+            is_saved = reply.status is ReplyStatus.DONE and reply.body.get("row") is not None
+            self._answers.carry((request.command_id.hex(), is_saved), self._take_answer)
+
+    def _take_answer(self, answer: Answer) -> None:
+        identity, is_saved = answer
+        self._open.pop(identity, None)
+        if is_saved:
+            self.saved.add(f"{self._teacher}-{identity}")

@@ -105,7 +105,7 @@ class _Drill:
         if not self._counted and now_s >= self._resume_at_s:
             self._note_the_end()
             if program.hand is not None:
-                program.hand.press_again()
+                program.hand.press()
             elif self._case.must.ends_by == "resume":
                 self.rig.set_down()  # a motor may have turned it towards the wall, where a bumper would hold it
                 program.runtime.reposition()

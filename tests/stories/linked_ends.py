@@ -1,9 +1,9 @@
 """Ends of the links of robots without CAN, a serial line and topics of ROS 2, and the faults between them."""
 
 import random
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from binascii import crc_hqx
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 
 from hal.bus import BusError
@@ -24,106 +24,45 @@ from simbridge.robot.wheels import Wheels
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.worlds.world_settings import WorldSettings
 from tests.stories import wire
+from tests.stories.ends import Ends
 from tests.stories.fault import FaultInjection
-from tests.stories.table import Fault, Target
-from tests.stories.wire import Wire
+from tests.stories.poor_link import SHARE, PoorLink
+from tests.stories.table import Fault
 
 Deliver = Callable[[bytes], None]
 
-_OUT = "out"
-"""Way of the driver's commands; the others are those of the robot's readings."""
-_SHARE = 0.3
-"""Share of the messages that a poor link loses, doubles, garbles or lets change places."""
-_SPEAKS_EVERY_S = 0.05
 _MOST_GARBAGE = 60
 _LONGER_THAN_ODOMETRY = 1000
 _WALL_S = 1e9
 """Wall clock at the beginning of simulated time; a stamp of 0 would mean none."""
 
 
-class LinkedEnds(ABC):
-    """Base of both. A late message does not overtake; what the driver sends is neither doubled nor reordered."""
+class LinkedEnds(Ends):
+    """Base of both. What the driver sends is neither doubled nor reordered."""
 
-    target: Target
-    wire: Wire
+    speaks_every_s = 0.05
 
     def __init__(self, settings: RobotSettings, injection: FaultInjection, chance: random.Random) -> None:
-        self.on_sent: Callable[[int, bytes], None] = lambda _number, _payload: None
-        """Callback with number and payload of each command that the driver sends."""
-        self.on_arrived: Callable[[int, bytes, float], None] = lambda _number, _payload, _at_s: None
-        """Callback with number, payload and time of arrival of each command that arrives at the robot."""
-        self.on_heard: Callable[[int, float], None] = lambda _id, _at_s: None
-        """Callback with 0 and the time at which the newest readings were made that arrived at the notebook."""
-        self._settings, self._injection, self._time, self._chance = settings, injection, injection.time, chance
-        self._sent = 0
+        super().__init__(settings, injection, chance)
+        self._in = PoorLink(injection, self.target, chance, self._instead, jitters=True)
+        self._out = PoorLink(injection, self.target, chance, self._instead, jitters=True)
         self._made_s = 0.0
-        self._due_s: dict[str, float] = {}
-        self._held: dict[str, Callable[[], None]] = {}
-        self._sound: dict[str, bytes] = {}
-        """Newest message of each way while nothing failed."""
-
-    @abstractmethod
-    def simulated(self, world: WorldSettings, seed: int, wheels: Wheels) -> SimulatedRobot:
-        """Return the robot at its end."""
-
-    @abstractmethod
-    def start_driver(self) -> GuardedRobot:
-        """Return a new driver at the notebook's end."""
-
-    @property
-    def back_at_s(self) -> float:
-        """Time from which on a program can start."""
-        fault = self._injection.acting_on(self.target)
-        return fault.end_s if fault is not None and fault.kind == "unplugged" else 0.0
-
-    def begin(self, fault: Fault) -> None:
-        """Do what a fault does at its beginning: a stranger or a diagnosis begins to speak."""
-        if fault.target == self.target and fault.kind in ("stranger", "alarm"):
-            self._speak(fault)
-
-    def finish(self, fault: Fault) -> None:
-        """Do what a fault does at its end: what was held back arrives."""
-        if fault.target == self.target:
-            for arrive in self._held.values():
-                arrive()
-            self._held.clear()
-
-    @abstractmethod
-    def _say(self, fault: Fault, *, over: bool) -> None:
-        """Say what a stranger or a diagnosis says while the fault lasts, and when it is over."""
-
-    @abstractmethod
-    def _garbled(self, message: bytes) -> bytes:
-        """Return what arrives in place of a message."""
-
-    @abstractmethod
-    def _repeated(self, old: bytes, message: bytes) -> bytes:
-        """Return a message with the readings of an old one."""
-
-    @abstractmethod
-    def _has_ranges(self, message: bytes) -> bool:
-        """Return whether a message holds readings of the range sensors."""
-
-    def _speak(self, fault: Fault) -> None:
-        now_s = self._time.now_s()
-        self._say(fault, over=now_s >= fault.end_s)
-        self._injection.acted.add(fault)
-        if now_s < fault.end_s:
-            self._time.at(min(now_s + _SPEAKS_EVERY_S, fault.end_s), lambda: self._speak(fault))
+        """Time at which the newest readings were made that arrived at the notebook."""
 
     def _command(self, payload: bytes, deliver: Deliver) -> None:
         """Carry a command of the driver."""
-        self._sent += 1
-        number = self._sent
-        self.on_sent(number, payload)
+        number, fault = self._note_sent(payload), self._injection.of(self.target)
 
         def arrive(each: bytes) -> None:
             self.on_arrived(number, each, self._time.now_s())
             deliver(each)
 
-        self._carry(_OUT, payload, arrive)
+        if fault is not None and fault.kind in ("doubled", "reordered"):
+            arrive(payload)
+        else:
+            self._out.carry(payload, arrive)
 
-    def _report(self, way: str, payload: bytes, deliver: Deliver) -> None:
+    def _report(self, topic: str, payload: bytes, deliver: Deliver) -> None:
         """Carry a report of the robot."""
         made_s = self._time.now_s()
 
@@ -133,41 +72,29 @@ class LinkedEnds(ABC):
                 self.on_heard(0, self._made_s)
             deliver(each)
 
-        self._carry(way, payload, arrive)
+        self._in.carry(payload, arrive, topic)
 
-    def _carry(self, way: str, message: bytes, deliver: Deliver) -> None:
-        fault, held = self._injection.acting_on(self.target), self._held.pop(way, None)
-        inward, chosen = way != _OUT, fault is not None and self._chance.random() < _SHARE
-        match None if fault is None else fault.kind:
-            case None:
-                self._sound[way] = message
-            case "off" | "unplugged" | "restart":
-                return
-            case "lost" if chosen:
-                return
-            case "delayed":
-                assert fault is not None
-                self._carry_late(fault, way, message, deliver)
-                return
-            case "garbage" if chosen:
-                message = self._garbled(message)
+    def _instead(self, fault: Fault, message: bytes, newest: bytes) -> Iterable[bytes]:
+        match fault.kind:
+            case "garbage" if self._chance.random() < SHARE:
+                return [self._garbled(message)]
             case "crlf":
-                message = message[:-1] + b"\r\n"
-            case "stuck" if inward:
-                message = self._repeated(self._sound.get(way, message), message)
-            case "reordered" if inward and chosen and held is None:
-                self._held[way] = partial(deliver, message)
-                return
-            case "doubled" if inward and chosen:
-                deliver(message)
-        deliver(message)
-        if held is not None:
-            held()
+                return [message[:-1] + b"\r\n"]
+            case "stuck" if self._has_ranges(message) and self._has_ranges(newest):
+                return [self._repeated(newest, message)]
+        return [message]
 
-    def _carry_late(self, fault: Fault, way: str, message: bytes, deliver: Deliver) -> None:
-        late_s = self._time.now_s() + self._chance.uniform(0.0, 2 * fault.delay_s)
-        due_s = self._due_s[way] = min(max(late_s, self._due_s.get(way, 0.0)), fault.end_s)
-        self._time.at(due_s, partial(deliver, message))
+    @abstractmethod
+    def _garbled(self, message: bytes) -> bytes:
+        """Return what arrives in place of a message."""
+
+    @abstractmethod
+    def _repeated(self, old: bytes, message: bytes) -> bytes:
+        """Return a message with the readings of an old one of the range sensors."""
+
+    @abstractmethod
+    def _has_ranges(self, message: bytes) -> bool:
+        """Return whether a message holds readings of the range sensors."""
 
 
 class _Port:
@@ -175,10 +102,13 @@ class _Port:
 
     name = "line of a story"
 
-    def __init__(self, write: Deliver, check: Callable[[], None]) -> None:
-        """`check`: raises BusError while the line is lost."""
-        self.waiting = 0
-        self._arrived, self._write, self._check = b"", write, check
+    def __init__(self, write: Deliver, check: Callable[[], None], late: Sequence[bytes] = ()) -> None:
+        """`check`: raises BusError while the line is lost. `late`: what was written and has not left."""
+        self._arrived, self._write, self._check, self._late = b"", write, check, late
+
+    @property
+    def waiting(self) -> int:
+        return sum(map(len, self._late))
 
     def arrive(self, data: bytes) -> None:
         self._arrived += data
@@ -209,14 +139,14 @@ class SerialEnds(LinkedEnds):
     def __init__(self, settings: RobotSettings, injection: FaultInjection, chance: random.Random) -> None:
         super().__init__(settings, injection, chance)
         self._robots_port = _Port(lambda line: self._report("line", line, self._drivers_port.arrive), lambda: None)
-        self._drivers_port = _Port(self._send, self._check)
+        self._drivers_port = _Port(self._send, self._check, self._out.late)
 
     def simulated(self, world: WorldSettings, seed: int, wheels: Wheels) -> SimulatedRobot:
         electronics = SchoolElectronics(self._settings, self._robots_port)
         return SimulatedRobot(self._settings, world, lambda *_: electronics, seed, wheels=wheels)
 
     def start_driver(self) -> GuardedRobot:
-        self._drivers_port = _Port(self._send, self._check)
+        self._drivers_port = _Port(self._send, self._check, self._out.late)
         sensors, first = len(self._settings.infrared.sensors), self._chance.randrange(NUMBERS)
         return LinkedRobot(self._settings, SchoolLink(self._drivers_port, sensors, first), self._time.now_s)
 
@@ -224,20 +154,9 @@ class SerialEnds(LinkedEnds):
         if self.back_at_s:
             raise BusError("the adapter is gone", where=_Port.name, do="plug it in")
 
-    def _carry_late(self, fault: Fault, way: str, message: bytes, deliver: Deliver) -> None:
-        """Deliver a late message; one to the robot waits in the notebook."""
-        port, size = self._drivers_port, len(message) if way == _OUT else 0
-        port.waiting += size
-
-        def leave(each: bytes) -> None:
-            port.waiting -= size
-            deliver(each)
-
-        super()._carry_late(fault, way, message, leave)
-
     def _send(self, line: bytes) -> None:
         if line.startswith(b"school "):
-            self._carry(_OUT, line, self._robots_port.arrive)
+            self._out.carry(line, self._robots_port.arrive)
         else:
             self._command(line, self._robots_port.arrive)
 
@@ -253,8 +172,7 @@ class SerialEnds(LinkedEnds):
         )
 
     def _repeated(self, old: bytes, message: bytes) -> bytes:
-        words, before = wire.words_of(message), wire.words_of(old)
-        return _line(b" ".join(words[:6] + before[6:])) if words[:1] == before[:1] == [b"sense"] else message
+        return _line(b" ".join(wire.words_of(message)[:6] + wire.words_of(old)[6:]))
 
     def _has_ranges(self, message: bytes) -> bool:
         return wire.words_of(message)[:1] == [b"sense"]
@@ -353,7 +271,7 @@ class TopicEnds(LinkedEnds):
         return message[:place] + chance.randbytes(1) + message[place + 1 :]
 
     def _repeated(self, old: bytes, message: bytes) -> bytes:
-        return message[:12] + old[12:] if self._has_ranges(message) else message  # CDR's header and the stamp
+        return message[:12] + old[12:]  # CDR's header and the stamp
 
     def _has_ranges(self, message: bytes) -> bool:
         return len(message) > _LONGER_THAN_ODOMETRY

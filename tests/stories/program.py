@@ -167,13 +167,12 @@ class Program:
                 self.knowledge.take_away(fault)
             case "recorder", _:
                 self.log = FaultyCanLog(injection)
-                self._rig.attach_tap(self.log)
+                self._attach_tap(self.log)
             case "teacher_link", _:
                 self.put(Take(self.next_id(), DRIVER))
-                press_id = self.runtime.timer.ticks + 1
-                self.hand = Hand(
-                    self._channel.handler, self._boot, injection, self._chance, press_id, self._device.judge
-                )
+                if self.hand is None:
+                    self.hand = Hand(self._device, self._channel.handler, self._boot, injection, self._chance)
+                self.hand.press()
             case "program", kind if kind in KILLS:
                 self.knowledge.journal.dies = kind
             case "link", "page_dies":
@@ -196,13 +195,17 @@ class Program:
             self._clock.repair()
         complaints: list[str] = []
         if fault.target == "recorder" and self.log is not None:
-            self._rig.attach_tap(None)
+            self._attach_tap(None)
             complaints += self.log.close()
             self.log = None
         if fault.target == "teacher_link" and self.hand is not None:
             self.hand.let_go()
-            self.hand = None
         return complaints
+
+    def _attach_tap(self, tap: FaultyCanLog | None) -> None:
+        bus = self._rig.ends.bus
+        assert bus is not None, "only CAN has a log"
+        bus.tap = tap
 
     def put(self, command: Command) -> None:
         with suppress(InboxFullError):  # a loop that hangs takes nothing; the teacher says it again

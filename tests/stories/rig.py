@@ -3,25 +3,19 @@
 import random
 from collections.abc import Mapping
 
-from hal.bus import CONTROL_ID, CanBus
-from hal.codec import load_codec
 from hal.guard_reason import GuardReason
 from hal.guarded_robot import GuardedRobot
-from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from hal.robot_settings import RobotSettings, load_robot
-from hal.tap import Tap
 from hal.watchdog import POLL_S
 from kurt2rt.robots.turtlebot.settings import TurtlebotSettings
-from simbridge.robot.wheels import Wheels
-from simbridge.simulated_robot import SimulatedKurt2, SimulatedRobot
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
+from tests.stories.can_ends import CanEnds
+from tests.stories.ends import Ends
 from tests.stories.fault import FaultInjection, SimulatedTime
-from tests.stories.faulty_cable import EndFaults
 from tests.stories.linked_ends import SerialEnds, TopicEnds
 from tests.stories.motors import FaultyWheels
 from tests.stories.table import RobotKind
-from tests.stories.wire import KURT2
 
 ROBOT: Kurt2Settings = load_kurt2()
 ROBOTS: Mapping[RobotKind, RobotSettings] = {
@@ -41,46 +35,6 @@ CORRIDOR = WorldSettings(
     start_poses=(StartPoseSettings(x_m=1.5, y_m=_WIDTH_M - _HALF_WIDTH_M - _WALL_AT_M, heading_deg=0.0),),
 )
 """Corridor with one constant situation, so that a standstill is due to the fault."""
-
-
-class CanEnds(EndFaults):
-    """Ends of KURT2's cable."""
-
-    wire = KURT2
-
-    def __init__(self, settings: Kurt2Settings, injection: FaultInjection, chance: random.Random) -> None:
-        super().__init__(injection, load_codec(settings.can.database), chance)
-        self._settings = settings
-        self._robots_bus = CanBus("cable", self.open_robots_end)
-        self._robots_bus.set_id_filter({CONTROL_ID})
-        self._notebooks_bus = CanBus("cable", self.open_notebooks_end)
-
-    @property
-    def back_at_s(self) -> float:
-        fault = self._injection.of("controller")
-        return fault.end_s if fault is not None and self.is_unplugged else 0.0
-
-    def simulated(self, world: WorldSettings, seed: int, wheels: Wheels) -> SimulatedRobot:
-        return SimulatedKurt2(self._settings, world, self._robots_bus, seed, wheels=wheels)
-
-    def start_driver(self) -> GuardedRobot:
-        self.replace_cable()
-        self._robots_bus.reopen()
-        self._notebooks_bus = CanBus("cable", self.open_notebooks_end)
-        return Kurt2(self._settings, self._notebooks_bus, watchdog_clock=self._time.now_s)
-
-    def kill_driver(self) -> None:
-        self._notebooks_bus.shutdown()
-
-    def attach_tap(self, tap: Tap | None) -> None:
-        """Let `tap` see each frame that passes the driver's interface."""
-        self._notebooks_bus.tap = tap
-
-    def close(self) -> None:
-        self._robots_bus.shutdown()
-
-
-Ends = CanEnds | SerialEnds | TopicEnds
 
 
 def _ends_of(settings: RobotSettings, injection: FaultInjection, chance: random.Random) -> Ends:
@@ -123,14 +77,9 @@ class Rig:
         """End the driver; one that was `killed` sends nothing any more."""
         if self.robot is not None and not killed:
             self.robot.close()
-        elif self.robot is not None and isinstance(self.ends, CanEnds):
-            self.ends.kill_driver()  # others send nothing without their program
+        elif self.ends.bus is not None:
+            self.ends.bus.shutdown()  # others send nothing without their program
         self.robot = None
-
-    def attach_tap(self, tap: Tap | None) -> None:
-        """Let `tap` see each frame that passes the driver's interface to CAN."""
-        assert isinstance(self.ends, CanEnds)
-        self.ends.attach_tap(tap)
 
     def set_down(self) -> None:
         """Put the robot at one of the world's start poses."""
@@ -142,8 +91,6 @@ class Rig:
 
     def close(self) -> None:
         self.end_driver()
-        if isinstance(self.ends, CanEnds):
-            self.ends.close()
 
     def _step(self) -> None:
         self.simulation.step()
