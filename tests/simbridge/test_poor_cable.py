@@ -3,7 +3,9 @@
 import random
 from collections.abc import Callable
 from contextlib import closing
+from typing import NamedTuple
 
+import can
 import pytest
 
 from hal.bus import CONTROL_ID, CanBus
@@ -13,12 +15,38 @@ from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from simbridge.links import CanLine
 from simbridge.robot_simulation import Kurt2Simulation
 from tests.simbridge.rig import ROBOT
-from tests.stories.cable import SOUND, Cable, CableFaults
+from tests.stories.cable import Cable, CableInterface
 
 TURN = WheelSpeeds(0.2, -0.2)
 TICK_S = ROBOT.cycle_s
 PHASE_S = 0.005
-LOSSY = CableFaults(lost=0.1)
+
+
+class CableFaults(NamedTuple):
+    """Longest time on the way in s, in which none overtakes another, and probability of a loss for each receiver."""
+
+    delay_s: float = 0.0
+    lost: float = 0.0
+
+
+SOUND, LOSSY = CableFaults(), CableFaults(lost=0.1)
+
+
+class PoorCable(Cable):
+    """Cable with faults; equal seeds give equal ones."""
+
+    def __init__(self, now_s: Callable[[], float], faults: CableFaults, chance: random.Random) -> None:
+        super().__init__(now_s)
+        self._faults, self._chance, self._carried_at_s = faults, chance, 0.0
+
+    def carry(self, frame: can.Message, sender: CableInterface) -> None:
+        at_s = self.now_s() + self._chance.uniform(0.0, self._faults.delay_s)
+        self._carried_at_s = max(self._carried_at_s, at_s)
+        super().carry(frame, sender)
+
+    def deliver(self, frame: can.Message, end: CableInterface, *, own: bool) -> None:
+        if own or self._chance.random() >= self._faults.lost:
+            end.deliver(frame, self._carried_at_s, own=own)
 
 
 class CableLine(CanLine):
@@ -26,7 +54,7 @@ class CableLine(CanLine):
 
     def __init__(self, faults: CableFaults, seed: int = 1) -> None:
         self._now_s = 0.0
-        cable = Cable(lambda: self._now_s, faults, random.Random(seed))
+        cable = PoorCable(lambda: self._now_s, faults, random.Random(seed))
         self.robot_end, self.notebook_end = (CanBus("cable", lambda _: cable.open()) for _ in range(2))
         self.robot_end.set_id_filter({CONTROL_ID})
 

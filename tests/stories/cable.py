@@ -1,10 +1,8 @@
-"""Cable without transmission time, sound or poor; timestamps and confirmations are SocketCAN's."""
+"""Cable without transmission time; timestamps and confirmations are SocketCAN's."""
 
 import copy
-import random
 from collections import deque
 from collections.abc import Callable
-from typing import NamedTuple
 
 import can
 
@@ -14,29 +12,12 @@ from hal.frame import Frame
 _MOST_WAITING = 4096
 
 
-class CableFaults(NamedTuple):
-    """Faults of a poor cable."""
-
-    delay_s: float = 0.0
-    """Longest time on the way; each frame takes a random part of it, and none overtakes another."""
-    lost: float = 0.0
-    """Probability that a frame is lost, drawn for each receiver."""
-
-
-SOUND = CableFaults()
-
-
 class Cable:
-    """Cable between its ends; equal seeds and calls give equal faults."""
+    """Cable between its ends."""
 
-    def __init__(
-        self, now_s: Callable[[], float], faults: CableFaults = SOUND, chance: random.Random | None = None
-    ) -> None:
-        """Args: `now_s`: returns the time in s; `chance`: of the faults, which a sound cable does without."""
+    def __init__(self, now_s: Callable[[], float]) -> None:
+        """`now_s`: returns the time in s."""
         self.now_s = now_s
-        self._faults = faults
-        self._chance = chance or random.Random(0)
-        self._carried_at_s = 0.0
         self._ends: list[CableInterface] = []
 
     def open(self) -> "CableInterface":
@@ -50,23 +31,18 @@ class Cable:
 
     def carry(self, frame: can.Message, sender: "CableInterface") -> None:
         """Deliver a copy of a frame to every end; the sender gets it once, as its confirmation."""
-        at_s = self._arrival_s() if self._faults.delay_s else self.now_s()
         for end in self._ends:
-            if is_heard(frame, end.accepted_ids) and (end is sender or not self._is_lost()):
-                end.deliver(frame, at_s, own=end is sender)
+            if is_heard(frame, end.accepted_ids):
+                self.deliver(frame, end, own=end is sender)
+
+    def deliver(self, frame: can.Message, end: "CableInterface", *, own: bool) -> None:
+        """Deliver a frame to an end that hears it; a poor cable may do otherwise. `own`: whether this end sent it."""
+        end.deliver(frame, self.now_s(), own=own)
 
     def leave(self, end: "CableInterface") -> None:
         """Remove an end; repeated calls do nothing."""
         if end in self._ends:
             self._ends.remove(end)
-
-    def _is_lost(self) -> bool:
-        return self._faults.lost > 0.0 and self._chance.random() < self._faults.lost
-
-    def _arrival_s(self) -> float:
-        at_s = self.now_s() + self._chance.uniform(0.0, self._faults.delay_s)
-        self._carried_at_s = max(self._carried_at_s, at_s)
-        return self._carried_at_s
 
 
 class CableInterface:
