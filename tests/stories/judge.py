@@ -3,13 +3,13 @@
 from collections.abc import Iterator
 
 from tests.stories.drill import LOST_FRAMES, Outcome
-from tests.stories.table import Row
+from tests.stories.table import DrillRow
 
 _MOMENT_S = 0.03
 """Longest standstill of a robot that reverses, some ticks."""
 
 
-def judge(must: Row, outcome: Outcome) -> list[str]:
+def judge(must: DrillRow, outcome: Outcome) -> list[str]:
     """Return what is not as the row says, or beyond the envelope."""
     return [
         *outcome.problems,
@@ -20,7 +20,7 @@ def judge(must: Row, outcome: Outcome) -> list[str]:
     ]
 
 
-def _limits(must: Row, outcome: Outcome) -> Iterator[str]:
+def _limits(must: DrillRow, outcome: Outcome) -> Iterator[str]:
     if not outcome.acted:
         yield "nothing failed"
     if outcome.old_frames > must.old_frames:
@@ -31,7 +31,7 @@ def _limits(must: Row, outcome: Outcome) -> Iterator[str]:
         yield f"the log must lose nothing, lost {outcome.counted[LOST_FRAMES]} frames"
 
 
-def _standstill(must: Row, outcome: Outcome) -> Iterator[str]:
+def _standstill(must: DrillRow, outcome: Outcome) -> Iterator[str]:
     if must.leads_to == "drives_on":
         if outcome.first is not None and outcome.longest_stand_s > _MOMENT_S:
             yield f"must drive on, stood for {outcome.longest_stand_s:.2f} s because of {outcome.first.because}"
@@ -48,7 +48,7 @@ def _standstill(must: Row, outcome: Outcome) -> Iterator[str]:
         yield "must go on in between, stood to the end of the fault"
 
 
-def _latch(must: Row, outcome: Outcome) -> Iterator[str]:
+def _latch(must: DrillRow, outcome: Outcome) -> Iterator[str]:
     if outcome.latched != must.latches:
         yield f"must stay stopped because of {must.latches}, it was {outcome.latched} {outcome.ended_by}"
     elif (
@@ -59,7 +59,7 @@ def _latch(must: Row, outcome: Outcome) -> Iterator[str]:
         yield f"must be stopped for good within {must.latches_within_s:g} s, took {outcome.latched_after_s:.3f}"
 
 
-def _end(must: Row, outcome: Outcome) -> Iterator[str]:
+def _end(must: DrillRow, outcome: Outcome) -> Iterator[str]:
     if must.ends_by == "itself":
         if not outcome.drove_by_itself:
             yield "must drive by itself when the fault is over, did not"

@@ -89,7 +89,7 @@ def story_of(seed: int, lasts_s: float) -> Story:
     busy: dict[Target, list[tuple[float, float]]] = {}
     for _ in range(chance.randint(0, MOST_FAULTS)):
         target, kind = chance.choice(chance.choice(parts))
-        lasts = chance.uniform(*TABLE.row(target, kind).span_s)
+        lasts = chance.uniform(*TABLE.row(target, kind).lasts_s)
         lasts = round(min(lasts, (lasts_s - CALM_S - FIRST_S) / 2), 3)
         at = round(chance.uniform(FIRST_S, lasts_s - CALM_S - lasts), 3)
         spans = busy.setdefault(target, [])

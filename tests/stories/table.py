@@ -1,6 +1,5 @@
 """The table of faults (`table.yaml`): twelve targets, seven kinds, and what the robot must do each time."""
 
-from abc import abstractmethod
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple, Self, get_args
 
@@ -10,65 +9,20 @@ from config.settings import Settings, load_settings
 
 RobotKind = Literal["kurt2", "school", "turtlebot"]
 
+_Part = Literal["sensor_board_1", "sensor_board_2", "encoders", "left_motor", "right_motor", "bus_in", "bus_out"]
+_DrillTarget = Literal[_Part, "teacher_link", "disk", "clock", "tick", "recorder"]
+_DrillKind = Literal["off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent"]
+
 Target = Literal[
-    "sensor_board_1",
-    "sensor_board_2",
-    "encoders",
-    "left_motor",
-    "right_motor",
-    "bus_in",
-    "bus_out",
-    "teacher_link",
-    "disk",
-    "clock",
-    "tick",
-    "recorder",
-    "bumpers",
-    "cable",
-    "controller",
-    "stranger",
-    "link",
-    "program",
-    "wall_clock",
-    "serial",
-    "topics",
+    _DrillTarget, "bumpers", "cable", "controller", "stranger", "link", "program", "wall_clock", "serial", "topics"
 ]
 """Part that fails; bus_in is the direction from robot to notebook, bus_out the opposite one. The last nine fail in
 stories only: a stranger is another node on the bus, link the one of the teacher's device."""
 
-Kind = Literal[
-    "off",
-    "stuck",
-    "garbage",
-    "wrong",
-    "slow",
-    "delayed",
-    "intermittent",
-    "full",
-    "read_only",
-    "sound",
-    "pressed",
-    "jump",
-    "lost",
-    "doubled",
-    "reordered",
-    "replayed",
-    "bus_off",
-    "unplugged",
-    "restart",
-    "telemetry",
-    "keys_renewed",
-    "page_dies",
-    "killed",
-    "killed_before_commit",
-    "killed_after_commit",
-    "back",
-    "ahead",
-    "crlf",
-    "stamps",
-    "stranger",
-    "alarm",
-]
+_OfMessages = Literal["sound", "lost", "doubled", "reordered", "replayed", "telemetry", "crlf", "stamps"]
+_OfParts = Literal["pressed", "jump", "bus_off", "unplugged", "restart", "stranger", "alarm", "full", "read_only"]
+_OfPrograms = Literal["keys_renewed", "page_dies", "killed", "killed_before_commit", "killed_after_commit"]
+Kind = Literal[_DrillKind, _OfMessages, _OfParts, _OfPrograms, "back", "ahead"]
 """Kind of fault: no output, repeated output, nonsense, plausible but false, rarer, late, on and off; then those that
 only stories have. A sound hand is no fault: a second teacher drives."""
 
@@ -82,12 +36,10 @@ moments. drives_on: never stands.
 EndsBy = Literal["itself", "resume", "press", "restart"]
 """Condition to drive again after the fault: nothing, a teacher's resume, a new press, a restart with a resume."""
 
-TARGETS: tuple[Target, ...] = get_args(Target)[:12]
-KINDS: tuple[Kind, ...] = get_args(Kind)[:7]
+TARGETS: tuple[Target, ...] = get_args(_DrillTarget)
+KINDS: tuple[Kind, ...] = get_args(_DrillKind)
 """Targets and kinds of the drills."""
 
-_SHORTEST_S, _LONGEST_S = 0.2, 3.0
-"""Durations in stories of a fault that has drills."""
 Seconds = Annotated[float, Field(gt=0, le=10)]
 
 
@@ -110,45 +62,47 @@ class Limits(Settings):
     """Speed of a side that rests: steps of a twist are not those of its sides."""
 
 
-class AnyRow(Settings):
-    """Fault of any kind, in drills or in stories."""
+class Row(Settings):
+    """Fault in stories, and why a robot may stand because of it."""
 
+    lasts_s: tuple[float, float] = (0.2, 3.0)
+    """Shortest and longest duration in a story, in s."""
     period_s: Seconds = 1.0
     """slow: interval between two outputs, or time constant. intermittent: span of each failure and recovery."""
     delay_s: Seconds = 1.0
     """Delay, or duration of each blocking call."""
+    because: str | tuple[str, ...] = ()
+    """Guard reason or decision cause of the standstill; any one of several."""
+    also: tuple[str, ...] = ()
+    """Further reasons of a robot whose other parts fail, too, or whose fault is longer or shorter than in a drill."""
     latches: str | None = None
     """Guard reason of the final latch."""
     latches_within_s: Seconds | None = None
 
     @property
-    @abstractmethod
+    def words(self) -> tuple[str, ...]:
+        """Accepted reasons of the standstill (`because`) as a tuple; empty for a robot that drives on."""
+        return (self.because,) if isinstance(self.because, str) else self.because
+
+    @property
     def reasons(self) -> frozenset[str]:
         """All guard reasons and decision causes of a robot that may stand because of it."""
+        return frozenset((*self.words, *self.also, *filter(None, (self.latches,))))
 
     @property
-    @abstractmethod
     def stands_within_s(self) -> float | None:
         """Time after which a robot that drove stands until the end, for good if it latches; None if it need not."""
-
-    @property
-    @abstractmethod
-    def span_s(self) -> tuple[float, float]:
-        """Shortest and longest duration in a story, in s."""
+        return self.latches_within_s
 
 
-class Row(AnyRow):
-    """Fault of one case and the required reaction."""
+class DrillRow(Row):
+    """Fault of one case, and what must come of it in a drill."""
 
-    lasts_s: Seconds | None = None
+    drill_lasts_s: Seconds | None = None
     """Duration; None: the schedule's."""
     stop_said_after_s: Seconds | None = None
     """Time from the fault to a teacher's stop; None: no stop."""
     leads_to: LeadsTo
-    because: str | tuple[str, ...] = ()
-    """Guard reason or decision cause of the standstill; any one of several."""
-    also: tuple[str, ...] = ()
-    """Further reasons of a robot whose other parts fail, too, or whose fault is longer or shorter than in a drill."""
     within_s: Seconds | None = None
     """Limit from the fault to the (first) standstill on the robot's end of the bus."""
     ends_by: EndsBy
@@ -159,21 +113,8 @@ class Row(AnyRow):
     why: str
 
     @property
-    def words(self) -> tuple[str, ...]:
-        """Accepted reasons of the standstill (`because`) as a tuple; empty for a robot that drives on."""
-        return (self.because,) if isinstance(self.because, str) else self.because
-
-    @property
-    def reasons(self) -> frozenset[str]:
-        return frozenset((*self.words, *self.also, *filter(None, (self.latches,))))
-
-    @property
     def stands_within_s(self) -> float | None:
         return (self.latches_within_s or self.within_s) if self.leads_to == "stands" else None
-
-    @property
-    def span_s(self) -> tuple[float, float]:
-        return _SHORTEST_S, self.lasts_s or _LONGEST_S
 
     @model_validator(mode="after")
     def _says_when_it_stands(self) -> Self:
@@ -205,27 +146,6 @@ class Fault(NamedTuple):
         return self.kind != "intermittent" or int((now_s - self.begin_s) / self.period_s) % 2 == 0
 
 
-class StoryRow(AnyRow):
-    """Fault that only stories have."""
-
-    lasts_s: tuple[float, float]
-    """Shortest and longest duration, in s."""
-    because: tuple[str, ...] = ()
-    """Guard reasons and decision causes of a robot that may stand because of it."""
-
-    @property
-    def reasons(self) -> frozenset[str]:
-        return frozenset(self.because)
-
-    @property
-    def stands_within_s(self) -> float | None:
-        return self.latches_within_s
-
-    @property
-    def span_s(self) -> tuple[float, float]:
-        return self.lasts_s
-
-
 class Schedule(Settings):
     """Times of a drill."""
 
@@ -244,10 +164,10 @@ class FaultTable(Settings):
     envelopes: dict[RobotKind, Limits]
     parts: dict[RobotKind, tuple[Target, ...]]
     """Targets that one robot has alone; it has all those that no robot has alone."""
-    cases: dict[Target, dict[Kind, Row]]
-    stories: dict[Target, dict[Kind, StoryRow]]
+    cases: dict[Target, dict[Kind, DrillRow]]
+    stories: dict[Target, dict[Kind, Row]]
 
-    def row(self, target: Target, kind: Kind) -> AnyRow:
+    def row(self, target: Target, kind: Kind) -> Row:
         """Return the row of a fault, of drills or of stories alone."""
         return self.cases.get(target, {}).get(kind) or self.stories[target][kind]
 
@@ -261,14 +181,14 @@ class Case(NamedTuple):
 
     target: Target
     kind: Kind
-    must: Row
+    must: DrillRow
 
     def __str__(self) -> str:
         return f"{self.target} {self.kind}"
 
     def at(self, begin_s: float, lasts_s: float) -> "Fault":
         """Return the fault of this case, for as long as its row says, or else for `lasts_s`."""
-        end_s = begin_s + (self.must.lasts_s or lasts_s)
+        end_s = begin_s + (self.must.drill_lasts_s or lasts_s)
         return Fault(self.target, self.kind, begin_s, end_s, self.must.period_s, self.must.delay_s)
 
 

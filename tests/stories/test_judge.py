@@ -4,7 +4,7 @@ import pytest
 
 from tests.stories.drill import LOST_FRAMES, Outcome, Standstill
 from tests.stories.judge import judge
-from tests.stories.table import CASES, Row, case_of
+from tests.stories.table import CASES, DrillRow, case_of
 
 STOOD = Outcome(
     first=Standstill(0.105, ("ticks ceased",)),
@@ -67,7 +67,7 @@ def test_outcomes_as_their_rows_say_pass() -> None:
         (case_of("recorder", "slow").must, LOST, "lost 3 frames"),
     ],
 )
-def test_each_part_of_a_row_is_looked_at(must: Row, outcome: Outcome, complaint: str) -> None:
+def test_each_part_of_a_row_is_looked_at(must: DrillRow, outcome: Outcome, complaint: str) -> None:
     (said,) = judge(must, outcome)
     assert complaint in said
 
