@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import can
 
+from hal.bus import CanBus
 from kurt2rt.runs.recording.can_log import CanLog
 from tests.stories.fault import FaultInjection
 
@@ -33,39 +34,35 @@ class _FaultyWriter:
         """Do nothing: nothing was opened."""
 
 
-class FaultyCanLog:
-    """CAN log (hal.tap.Tap) that is written every 0.1 s of simulated time unless its writer blocks.
+class FaultyCanLog(CanLog):
+    """CAN log that is written every 0.1 s of simulated time unless its writer blocks.
 
     off, garbage, intermittent: errors. stuck: a write blocks, with room for half a second. wrong: the writer changes
     its frames. slow, delayed: each write takes long.
     """
 
-    def __init__(self, injection: FaultInjection) -> None:
-        self._injection, self._time = injection, injection.time
-        self._log = CanLog(_FaultyWriter(injection), "a drill's", "sim", _ROOM_FRAMES)
+    def __init__(self, injection: FaultInjection, bus: CanBus) -> None:
+        super().__init__(_FaultyWriter(injection), "a drill's", "sim", _ROOM_FRAMES)
+        self._injection, self._time, self._bus = injection, injection.time, bus
+        bus.tap = self
         self._noted = 0
-        self._is_closed = False
+        self._is_over = False
         self._plan()
 
     def on_rx(self, frame: can.Message, age_s: float) -> None:
         self._noted += 1
-        self._log.on_rx(frame, age_s)
+        super().on_rx(frame, age_s)
 
     def on_tx(self, frame: can.Message) -> None:
         self._noted += 1
-        self._log.on_tx(frame)
+        super().on_tx(frame)
 
-    @property
-    def lost(self) -> int:
-        """Number of lost frames by the log's own count."""
-        return self._log.lost
-
-    def close(self) -> Iterator[str]:
-        """Write the rest and yield a complaint if the log's own counts do not add up."""
-        self._is_closed = True
-        self._log.write_waiting()
-        if self._log.written + self._log.lost != self._noted:
-            yield f"{self._noted} frames passed, {self._log.written} were written and {self._log.lost} lost"
+    def finish(self) -> Iterator[str]:
+        """Leave the bus, write the rest, and yield a complaint if the log's own counts do not add up."""
+        self._is_over, self._bus.tap = True, None
+        self.write_waiting()
+        if self.written + self.lost != self._noted:
+            yield f"{self._noted} frames passed, {self.written} were written and {self.lost} lost"
 
     def _plan(self) -> None:
         now_s, fault = self._time.now_s(), self._injection.acting_on("recorder")
@@ -75,6 +72,6 @@ class FaultyCanLog:
         self._time.at(now_s + after_s, self._write)
 
     def _write(self) -> None:
-        if not self._is_closed:
-            self._log.write_waiting()
+        if not self._is_over:
+            self.write_waiting()
             self._plan()

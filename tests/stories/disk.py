@@ -109,18 +109,10 @@ class KnowledgeFile:
 
     def take_away(self, fault: Fault) -> None:
         """Write what waits, and put another file in the place of this one for as long as a planned fault lasts."""
-        away = self._path.with_name("away")
-
-        def replace_by_another() -> None:
-            self._path.rename(away)
-            self._path.write_bytes(b"")
-
-        self._time.at(fault.begin_s, replace_by_another)
-
-        def bring_back() -> None:
-            away.rename(self._path)
-
-        self._time.at(fault.end_s, bring_back)
+        path, away = self._path, self._path.with_name("away")
+        self._time.at(fault.begin_s, lambda: path.rename(away))
+        self._time.at(fault.begin_s, lambda: path.write_bytes(b""))
+        self._time.at(fault.end_s, lambda: away.rename(path))
 
     def on_acknowledged(self, acknowledgement: Acknowledgement) -> None:
         if acknowledgement.sequence is not None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from hal.kurt2_settings import Kurt2Settings
-from kurt2rt.core.teaching.commands import Resume, Teach, Watch
+from kurt2rt.core.teaching.commands import ReplaceAction, Resume, Stop, Teach, Watch
 from kurt2rt.core.tick_record import TickRecord
 from tests.stories.device import TEACHER, Device
 from tests.stories.program import Program
@@ -17,6 +17,7 @@ from tests.stories.witness import Witness
 LOST_FRAMES = "lost frames"
 """Key in `Outcome.counted` for frames missing in the CAN log."""
 _ACTION = "along_left_wall"
+_LESSON_EVERY_S = 0.25
 
 
 class Standstill(NamedTuple):
@@ -58,6 +59,7 @@ class Outcome(NamedTuple):
 class _Drill:
     def __init__(self, case: Case, seed: int, folder: Path, settings: Kurt2Settings) -> None:
         self._case, self._folder, self._settings = case, folder, settings
+        self._by_hand = case.target == "teacher_link"
         self._chance = random.Random(f"drill {case} {seed}")
         self.rig = Rig(settings, CORRIDOR, self._chance)
         self._witness = Witness(self.rig)
@@ -70,7 +72,7 @@ class _Drill:
         self._witness.watch()
         self.rig.injection.plan(self._fault)
         self._program.begin_fault(self._fault)
-        self._program.rehearse(case, self._fault)
+        self._rehearse()
         self._resume_at_s = self._fault.end_s + TABLE.schedule.settles_s
         self._latched: str | None = None
         self._counted: dict[str, int] = {}
@@ -99,19 +101,36 @@ class _Drill:
         program.put(Resume(program.next_id(), TEACHER))
         return program
 
+    def _rehearse(self) -> None:
+        """Let happen what the case needs besides its fault: lessons for the disk, a stop for a motor."""
+        program, begin_s, must = self._program, self._fault.begin_s, self._case.must
+        if self._case.target == "disk":
+            for number in range(int((self._fault.end_s - begin_s) / _LESSON_EVERY_S)):
+                self.rig.time.at(begin_s + number * _LESSON_EVERY_S, self._repeat_known_lesson)
+        if must.stop_said_after_s is not None:
+            stop = Stop(program.next_id(), TEACHER)
+            self.rig.time.at(begin_s + must.stop_said_after_s, lambda: program.put(stop))
+
+    def _repeat_known_lesson(self) -> None:
+        """Teach the action of the oldest RLA once more: what the robot does then is for the disk's sake alone."""
+        program = self._program
+        rla = next(iter(program.runtime.level.system.rlas), None)
+        if rla is not None:
+            program.put(ReplaceAction(program.next_id(), TEACHER, rla.rla_id, rla.action))
+
     def _teach(self, record: TickRecord) -> None:
         """Resume the robot when it is due, and answer a question while no fault is active."""
         program, now_s = self._program, self.rig.time.now_s()
         if not self._counted and now_s >= self._resume_at_s:
             self._note_the_end()
-            if program.hand is not None:
+            if self._by_hand:
                 program.hand.press()
             elif self._case.must.ends_by == "resume":
                 self.rig.set_down()  # a motor may have turned it towards the wall, where a bumper would hold it
                 program.runtime.reposition()
                 program.put(Resume(program.next_id(), TEACHER))
                 return
-        if program.hand is not None:
+        if self._by_hand:
             return
         if record.decision.asking and not self._fault.begin_s <= now_s < self._resume_at_s:
             program.put(Teach(program.next_id(), TEACHER, _ACTION))
@@ -126,7 +145,7 @@ class _Drill:
             "junk frames": robot.health.junk,
             "unintelligible commands": self._witness.envelope.unintelligible,
             "missed ticks": program.runtime.timer.missed_ticks,
-            "refused messages": 0 if program.hand is None else program.hand.refused,
+            "refused messages": program.hand.refused,
             LOST_FRAMES: 0 if program.log is None else program.log.lost,
         }
 

@@ -14,13 +14,13 @@ class SimulatedTime:
 
     def __init__(self) -> None:
         self._now_s = 0.0
-        self._planned: list[tuple[float, int, Callable[[], None]]] = []
+        self._planned: list[tuple[float, int, Callable[[], object]]] = []
         self._numbers = 0
 
     def now_s(self) -> float:
         return self._now_s
 
-    def at(self, time_s: float, act: Callable[[], None]) -> None:
+    def at(self, time_s: float, act: Callable[[], object]) -> None:
         """Schedule a callback; a past time means as soon as time passes. Equal times run in order of scheduling."""
         self._numbers += 1
         heapq.heappush(self._planned, (time_s, self._numbers, act))
@@ -58,11 +58,6 @@ class FaultInjection:
     def plan(self, fault: Fault) -> None:
         """Plan a fault in place of the one before of its target."""
         self._faults[fault.target] = fault
-
-    @property
-    def is_quiet(self) -> bool:
-        """True if no fault is planned or under way."""
-        return not self._faults
 
     def end(self, target: Target) -> None:
         """Forget the fault of a target."""

@@ -15,7 +15,7 @@ from kurt2rt.channel.protocol.limits import BOOT_BYTES
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.decision.standing import STARTED
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.core.teaching.commands import Command, ReplaceAction, Stop, Take
+from kurt2rt.core.teaching.commands import Command, Take
 from kurt2rt.core.teaching.inbox import InboxFullError, PairingRenewed
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.loading import open_for_teaching
@@ -32,7 +32,7 @@ from tests.stories.disk import KilledError, KnowledgeFile
 from tests.stories.hand import DRIVER, Hand
 from tests.stories.level import FaultyLevel
 from tests.stories.rig import Rig
-from tests.stories.table import Case, Fault
+from tests.stories.table import Fault
 from tests.stories.witness import Witness
 
 TASK: TaskSettings = load_task("wall_following")
@@ -42,7 +42,6 @@ _FIRST_DAY = datetime(2000, 1, 1, tzinfo=UTC)
 _RECORDINGS_MB = 50
 _CHECKPOINT_S = 10.0
 _STATUS_S = 3600.0
-_LESSON_EVERY_S = 0.25
 _WRITES_EVERY_TICKS = 10
 _POLL_EVERY_TICKS = 1000
 """Period of the recorder's sync; the disk is not faster in simulated time."""
@@ -70,7 +69,6 @@ class Program:
         self.ended_by = ""
         """Error that ended the program; empty without one."""
         self.killed = False
-        self.hand: Hand | None = None
         self.log: FaultyCanLog | None = None
         self._rig, self._witness, self._time, self._device = rig, witness, rig.time, device
         settings = self.robot = rig.settings
@@ -97,12 +95,13 @@ class Program:
                 settings, task, opened, context, started=self._wall_time()
             )
             self._recorder.poll()
-        self._boot = number.to_bytes(BOOT_BYTES, "big")
-        parts = replace(self.service.channel_dependencies(), boot=self._boot)
+        boot = number.to_bytes(BOOT_BYTES, "big")
+        parts = replace(self.service.channel_dependencies(), boot=boot)
         channel = self._channel = Channel(runtime, cast("Any", None), parts, longest_wait_s=_ENDLESS_S)
         # No socket: devices talk to the handler.
         channel.endpoint = cast("Any", SimpleNamespace(counters=SimpleNamespace(failed=0), newest_failure=""))
-        device.connect(channel.handler, self._boot)
+        device.connect(channel.handler, boot)
+        self.hand = Hand(device, channel.handler, boot, rig.injection, chance)
         console = ProgramConsole(
             status=lambda _: None, question=lambda _: None, acknowledged=self.knowledge.on_acknowledged
         )
@@ -141,8 +140,7 @@ class Program:
     def close(self) -> list[str]:
         """End driver and files; return complaints about lost lessons and ticks. Raises KnowledgeError."""
         self._device.disconnect()
-        if self.hand is not None:
-            self.hand.disconnect()
+        self.hand.disconnect()
         self._channel.handler.close()
         self._rig.end_driver(killed=self.killed)
         disk = self._rig.injection.of("disk")
@@ -160,18 +158,15 @@ class Program:
 
     def begin_fault(self, fault: Fault) -> None:
         """Do what belongs to a fault that begins within half a second: a hand that drives, a log, a lost file."""
-        injection = self._rig.injection
+        bus = self._rig.ends.bus
         match fault.target, fault.kind:
             case "disk", "wrong":
                 self.knowledge.write()
                 self.knowledge.take_away(fault)
-            case "recorder", _:
-                self.log = FaultyCanLog(injection)
-                self._attach_tap(self.log)
+            case "recorder", _ if bus is not None:
+                self.log = FaultyCanLog(self._rig.injection, bus)
             case "teacher_link", _:
                 self.put(Take(self.next_id(), DRIVER))
-                if self.hand is None:
-                    self.hand = Hand(self._device, self._channel.handler, self._boot, injection, self._chance)
                 self.hand.press()
             case "program", kind if kind in KILLS:
                 self.knowledge.journal.dies = kind
@@ -180,32 +175,16 @@ class Program:
             case "link", "keys_renewed":
                 self.runtime.inbox.put(PairingRenewed(TEACHER))
 
-    def rehearse(self, case: Case, fault: Fault) -> None:
-        """Let happen what a drill needs besides its fault: lessons for the disk, a stop for a motor."""
-        if case.target == "disk":
-            for number in range(int((fault.end_s - fault.begin_s) / _LESSON_EVERY_S)):
-                self._time.at(fault.begin_s + number * _LESSON_EVERY_S, self._repeat_known_lesson)
-        if case.must.stop_said_after_s is not None:
-            stop = Stop(self.next_id(), TEACHER)
-            self._time.at(fault.begin_s + case.must.stop_said_after_s, lambda: self.put(stop))
-
     def end_fault(self, fault: Fault) -> list[str]:
         """End a fault that is over; return complaints about its log."""
         if fault.target == "clock":
             self._clock.repair()
-        complaints: list[str] = []
-        if fault.target == "recorder" and self.log is not None:
-            self._attach_tap(None)
-            complaints += self.log.close()
-            self.log = None
-        if fault.target == "teacher_link" and self.hand is not None:
+        if fault.target == "teacher_link":
             self.hand.let_go()
-        return complaints
-
-    def _attach_tap(self, tap: FaultyCanLog | None) -> None:
-        bus = self._rig.ends.bus
-        assert bus is not None, "only CAN has a log"
-        bus.tap = tap
+        if fault.target != "recorder" or self.log is None:
+            return []
+        log, self.log = self.log, None
+        return list(log.finish())
 
     def put(self, command: Command) -> None:
         with suppress(InboxFullError):  # a loop that hangs takes nothing; the teacher says it again
@@ -235,9 +214,3 @@ class Program:
 
     def _wall_clock(self) -> str:
         return self._wall_time().isoformat(timespec="milliseconds")
-
-    def _repeat_known_lesson(self) -> None:
-        """Teach the action of the oldest RLA once more: what the robot does then is for the disk's sake alone."""
-        rla = next(iter(self.runtime.level.system.rlas), None)
-        if rla is not None:
-            self.put(ReplaceAction(self.next_id(), TEACHER, rla.rla_id, rla.action))

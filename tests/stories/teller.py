@@ -167,8 +167,7 @@ class _Teller:
             self.told.resident_mb.append(psutil.Process().memory_info().rss / 1e6)
         assert self._program is not None
         hand = self._program.hand
-        hand_at_s = -math.inf if hand is None else hand.heard_at_s
-        heard_at_s = self._heard_at_s = max(self._heard_at_s, self._device.heard_at_s, hand_at_s)
+        heard_at_s = self._heard_at_s = max(self._heard_at_s, self._device.heard_at_s, hand.heard_at_s)
         unsaved_s = self._program.knowledge.must_stand_since_s
         self._rules.on_tick(record, now_s, heard_at_s=heard_at_s, unsaved_s=unsaved_s)
 
