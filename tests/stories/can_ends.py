@@ -209,26 +209,27 @@ class CanEnds(Ends):
 
     def _instead(self, fault: Fault, frame: Frame, newest: Frame) -> Iterable[Frame]:
         """Return what a faulty part gives in place of a frame: nonsense, or what is plausible, but false."""
-        frame_id, message, chance = frame.arbitration_id, self._codec.by_id[frame.arbitration_id], self._chance
+        frame_id, messages, chance = frame.arbitration_id, self._codec.by_id, self._chance
         match fault.target, fault.kind:
             case "encoders", "stuck":
-                return [message.pack(0, 0)]  # a count that stands still: no ticks since the last frame
+                return [messages[frame_id].pack(0, 0)]  # a count that stands still: no ticks since the last frame
             case "encoders", "wrong":
-                return [message.pack(*(-ticks for ticks in message.unpack(frame.data)))]
+                return [messages[frame_id].pack(*(-ticks for ticks in messages[frame_id].unpack(frame.data)))]
             case "encoders", "jump":
                 ticks = chance.choice((-_MOST_TICKS, _MOST_TICKS))
-                return [message.pack(ticks, ticks)]
+                return [messages[frame_id].pack(ticks, ticks)]
             case "bumpers", "pressed":
-                return [message.pack(_FRONT_BUMPER, 0)]
+                return [messages[frame_id].pack(_FRONT_BUMPER, 0)]
             case "bus_in", "wrong":
-                return [frame, _FOREIGN_COMMAND] if message.name == "BUMPERC" else [frame]
+                return [frame, _FOREIGN_COMMAND] if messages[frame_id].name == "BUMPERC" else [frame]
             case "bus_out", "wrong":
                 return [Frame(_OTHER_ID, frame.data)]
             case "bus_out", "garbage":
                 # Of no mode that moves it: a set point that chance makes is the cable's, and would be judged.
                 return [Frame(CONTROL_ID, b"\xee" + chance.randbytes(len(frame.data) - 1))]
             case _, "wrong":
-                return [message.pack(*(max(0, _FLOOR_AND_PLATEAU - each) for each in message.unpack(frame.data)))]
+                counts = messages[frame_id].unpack(frame.data)
+                return [messages[frame_id].pack(*(max(0, _FLOOR_AND_PLATEAU - each) for each in counts))]
             case _, "stuck":
                 return [Frame(frame_id, newest.data)]
             case _, "garbage":
