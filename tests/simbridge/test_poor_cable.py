@@ -55,7 +55,8 @@ class CableLine(CanLine):
     def __init__(self, faults: CableFaults, seed: int = 1) -> None:
         self._now_s = 0.0
         cable = PoorCable(lambda: self._now_s, faults, random.Random(seed))
-        self.robot_end, self.notebook_end = (CanBus("cable", lambda _: cable.open()) for _ in range(2))
+        ends = (CanBus("cable", lambda _: cable.join(CableInterface(cable))) for _ in range(2))
+        self.robot_end, self.notebook_end = ends
         self.robot_end.set_id_filter({CONTROL_ID})
 
     def cycle(self, step_robot: Callable[[], None]) -> None:

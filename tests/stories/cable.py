@@ -20,10 +20,6 @@ class Cable:
         self.now_s = now_s
         self._ends: list[CableInterface] = []
 
-    def open(self) -> "CableInterface":
-        """Return a new end; it receives the frames that are carried from now on."""
-        return self.join(CableInterface(self))
-
     def join(self, end: "CableInterface") -> "CableInterface":
         """Let an end of this cable receive the frames that are carried from now on."""
         self._ends.append(end)

@@ -1,5 +1,6 @@
 """Judge of what the robot takes from its teachers' devices, by the messages as they were sent."""
 
+import math
 from collections.abc import Iterator
 
 from kurt2rt.channel.protocol.requests import Request, StopRequest, StreamRequest, TickRequest
@@ -20,6 +21,8 @@ class ChannelJudge:
 
     def __init__(self) -> None:
         self.problems: list[str] = []
+        self.heard_at_s = -math.inf
+        """Simulated time at which the newest message that the robot understood arrived there."""
         self.begin_program(b"")
 
     def begin_program(self, boot: bytes) -> None:

@@ -2,7 +2,6 @@
 
 import asyncio
 import itertools
-import math
 import random
 from collections.abc import Iterable
 from dataclasses import fields, replace
@@ -41,8 +40,6 @@ class Device:
     def __init__(
         self, injection: FaultInjection, chance: random.Random, teacher: str = TEACHER, target: Target = "link"
     ) -> None:
-        self.heard_at_s = -math.inf
-        """Time at which the newest message that the robot understood arrived there."""
         self.saved: set[str] = set()
         """Ids of the commands whose lesson the robot said to be durable."""
         self.refused = 0
@@ -128,7 +125,7 @@ class Device:
         except WireError:
             self.refused += 1
             return
-        self.heard_at_s = self._time.now_s()
+        self.judge.heard_at_s = self._time.now_s()
         task = asyncio.get_running_loop().create_task(
             self._answered(handler, Sender(self._teacher, b"", number), request)
         )

@@ -126,8 +126,7 @@ class _Drill:
             if self._by_hand:
                 program.hand.press()
             elif self._case.must.ends_by == "resume":
-                self.rig.set_down()  # a motor may have turned it towards the wall, where a bumper would hold it
-                program.runtime.reposition()
+                program.set_down()  # a motor may have turned it towards the wall, where a bumper would hold it
                 program.put(Resume(program.next_id(), TEACHER))
                 return
         if self._by_hand:

@@ -71,19 +71,15 @@ class Rules:
         ):
             self.problems.append(f"the program ended by {error}")
 
-    def on_tick(self, record: TickRecord, now_s: float, *, heard_at_s: float, unsaved_s: float) -> None:
-        """Judge a tick; times are simulated.
-
-        `heard_at_s`: arrival of the newest message of any teacher. `unsaved_s`: begin of the time in which lessons
-        cannot be saved, or infinity.
-        """
+    def on_tick(self, record: TickRecord, now_s: float, *, unsaved_s: float) -> None:
+        """Judge a tick; times are simulated. `unsaved_s`: when lessons could no more be saved, or infinity."""
         story, over_s = self._story, self._story.over_s
         moves = record.guard_result.wheel_speeds != STANDSTILL
         if now_s <= max(over_s, story.lasts_s - CALM_S) + WORKS_AGAIN_S:
             # An action that a teacher taught by mistake may be to stand.
             acts = record.decision.driving and _LIMITS.issuperset(record.guard_result.reasons)
             self._works = now_s >= over_s and (self._works or acts or record.decision.cause in ASKING)
-        silent_s = now_s - heard_at_s
+        silent_s = now_s - self._device.judge.heard_at_s
         # A lease counts by the program's clock, which may run at half speed.
         longest_s = _SILENT_S * (2 if any(str(fault) == "clock slow" for fault in self.begun) else 1)
         if moves and story.teaching.phase < AUTONOMOUS and silent_s > longest_s:

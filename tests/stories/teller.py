@@ -2,7 +2,6 @@
 
 import asyncio
 import ctypes
-import math
 import random
 import shutil
 from collections import Counter
@@ -76,7 +75,6 @@ class _Teller:
         self._program: Program | None = None
         self._rules = Rules(story, self._witness, self._device)
         self._ends = False
-        self._heard_at_s = -math.inf
         self._rare, self._pauses = self._chance("points"), self._chance("pauses")
         for event in story.faults:
             self._plan(event)
@@ -131,7 +129,7 @@ class _Teller:
         teacher = StoryTeacher(program, self._task, story.teaching, chance)
         points.happens = self._happens
         try:
-            await program.run(lambda record: self._after_tick(teacher, record), self._is_over)
+            await program.run(lambda record: self._after_tick(program, teacher, record), self._is_over)
         finally:
             points.happens = never
         told.ticks += program.runtime.timer.ticks
@@ -155,21 +153,17 @@ class _Teller:
         is_whole = program.recorded is not None and program.runtime.timer.ticks > 0 and not program.killed
         return is_whole and not falsified
 
-    def _after_tick(self, teacher: StoryTeacher, record: TickRecord) -> None:
+    def _after_tick(self, program: Program, teacher: StoryTeacher, record: TickRecord) -> None:
         now_s = self._time.now_s()
         if not teacher.is_calm and now_s >= self._story.lasts_s - CALM_S:
             teacher.is_calm = True
-            self._set_free()
+            program.set_down()
         for command in teacher.update(record):
             self._device.send(command)
         if record.number % _MINUTE_TICKS == 0:
             ctypes.CDLL(None).malloc_trim(0)
             self.told.resident_mb.append(psutil.Process().memory_info().rss / 1e6)
-        assert self._program is not None
-        hand = self._program.hand
-        heard_at_s = self._heard_at_s = max(self._heard_at_s, self._device.heard_at_s, hand.heard_at_s)
-        unsaved_s = self._program.knowledge.must_stand_since_s
-        self._rules.on_tick(record, now_s, heard_at_s=heard_at_s, unsaved_s=unsaved_s)
+        self._rules.on_tick(record, now_s, unsaved_s=program.knowledge.must_stand_since_s)
 
     def _plan(self, event: Event) -> None:
         fault = event.fault()
@@ -200,12 +194,6 @@ class _Teller:
 
     def _is_over(self) -> bool:
         return self._ends or self._time.now_s() >= self._story.lasts_s
-
-    def _set_free(self) -> None:
-        """Put it where it can drive, as a person does."""
-        self.rig.set_down()
-        if self._program is not None:
-            self._program.runtime.reposition()
 
 
 def _open_files() -> int:
