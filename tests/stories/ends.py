@@ -1,4 +1,4 @@
-"""What all links between robot and notebook have in common in stories: an end at each side, and faults between them."""
+"""Ends of the link between robot and notebook, by what all links have in common."""
 
 import random
 from abc import ABC, abstractmethod

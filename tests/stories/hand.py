@@ -20,7 +20,7 @@ class Hand(Device):
     def __init__(
         self, device: Device, handler: RequestHandler, boot: bytes, injection: FaultInjection, chance: random.Random
     ) -> None:
-        """Args: `device`: of the first teacher, which is judged and awaited with this one; `boot`: the program's."""
+        """`device`: of the first teacher, which is judged and awaited with this one. `boot`: of the program."""
         super().__init__(injection, chance, DRIVER, "teacher_link")
         self.judge, self._tasks = device.judge, device._tasks
         self._handler, self._boot, self._injection = handler, boot, injection

@@ -34,8 +34,11 @@ class PoorLink(Generic[Message]):
         *,
         jitters: bool = False,
     ) -> None:
-        """Args: `instead`: what arrives under a fault in place of a message, told with the newest one before the fault;
-        `jitters`: whether delays are random, of the same mean."""
+        """Begin with nothing on the way.
+
+        `instead`: what arrives under a fault in place of a message, told with the newest one before the fault.
+        `jitters`: whether delays are random, of the same mean.
+        """
         self.late: list[Message] = []
         """Messages on the way."""
         self.newest: dict[Hashable, Message] = {}

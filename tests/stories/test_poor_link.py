@@ -43,7 +43,7 @@ def arrived(kind: Kind, *, delay_s: float = 0.25, jitters: bool = False) -> list
         ("crlf", [*BEFORE, *DURING, *AFTER]),
     ],
 )
-def test_what_arrives_in_order(kind: Kind, expected: list[int]) -> None:
+def test_poor_link_in_order(kind: Kind, expected: list[int]) -> None:
     assert [each for each, _ in arrived(kind)] == expected
 
 
