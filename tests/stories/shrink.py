@@ -16,12 +16,12 @@ _BEGINS_S, _GAP_S = 3.0, 1.0
 _SHORTEST_S = 0.05
 _TRAITS = ("task", "world", "taught", "records", "points", "teaching")
 """Fields that make a story plainer when they have their default, in the order in which that is tried."""
-_NUMBER = re.compile(r"[\d.]+")
+_OF_ONE_STORY = re.compile(r"/\S+|[\d.]+")
 
 
 def kind_of(problem: str) -> str:
-    """Return a problem without its numbers, which differ from story to story."""
-    return _NUMBER.sub("#", problem)
+    """Return a problem without its numbers and paths, which differ from story to story."""
+    return _OF_ONE_STORY.sub("#", problem)
 
 
 async def shrunk(story: Story, breaks: Breaks) -> Story:

@@ -108,7 +108,7 @@ async def test_shrinking_leaves_what_breaks() -> None:
         nonlocal tries
         tries += 1
         targets = {each.target for each in tried.faults}
-        return f"at {tries}.5 s it breaks" if {"encoders", "bus_out"} <= targets else ""
+        return f"at {tries}.5 s /tmp/{tries} breaks" if {"encoders", "bus_out"} <= targets else ""
 
     shortest = await shrunk(story.model_copy(update={"faults": faults}), breaks)
     assert [each.target for each in shortest.faults] == ["encoders", "bus_out"]
