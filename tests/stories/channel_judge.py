@@ -13,6 +13,7 @@ _STREAM_TICKS, _MOVING_TICKS, _COMMAND_TICKS = 40, 100, 300
 """Greatest ages of the state that a teacher had seen, a second statement of the robot's."""
 _PRESS_TICKS = 30
 """Ticks that the robot runs without a message of a press until that is over for certain."""
+_REMEMBERED_TICKS = 1000
 _NEVER = -1_000_000
 
 
@@ -38,6 +39,7 @@ class ChannelJudge:
         """Count a tick that ran; what it missed before counts for no limit."""
         self._ran += 1
         self._ran_at[tick] = self._ran
+        self._ran_at.pop(tick - _REMEMBERED_TICKS, None)
 
     @property
     def picture_ticks(self) -> int:
