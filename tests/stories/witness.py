@@ -54,6 +54,8 @@ class Witness(RobotProxy):
         self._watches = False
         self._sensed_at_s = self._clock_faulty_until_s = self._clock_slow_until_s = 0.0
         self._must_stand = ""
+        self._stops = set[str]()
+        """Ids of the stops of teachers since the last resume."""
         self._stop_tick, self._newest_press, self._ended_press = -1, -1, -2
         """Tick of the newest stop of a teacher, and ids of hands' presses: the newest, and the newest one before it."""
         self.digest = hashlib.sha256()
@@ -67,6 +69,7 @@ class Witness(RobotProxy):
         """Observe the driver of a new program, which must stand until it is resumed."""
         self._robot = robot
         self._must_stand = "the program was started"
+        self._stops.clear()
         self._stop_tick, self._newest_press, self._ended_press = -1, -1, -2
         self.envelope.begin_program()
 
@@ -101,13 +104,16 @@ class Witness(RobotProxy):
         for each in record.commands:
             if isinstance(each, Resume) and each.command_id in done:
                 self._must_stand = ""
+                self._stops.clear()
                 self.resumes += 1
                 if each.seen_tick is not None and each.seen_tick < self._stop_tick:
                     self._complain("a stop is lifted by a teacher who had not seen it")
             elif isinstance(each, Stop) and each.press_id is None:
                 self._must_stand = f"{each.teacher} said stop"
                 self._ended_press = self._newest_press
-                self._stop_tick = record.tick if each.command_id in done else self._stop_tick
+                if each.command_id not in self._stops:  # a copy is not a newer one
+                    self._stops.add(each.command_id)
+                    self._stop_tick = record.tick
             elif isinstance(each, Drive):
                 self._newest_press = max(self._newest_press, each.press_id)
         # A teacher's hand tells it to drive, until it lets go.
