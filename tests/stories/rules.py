@@ -1,5 +1,6 @@
 """Rules that hold in every story, whatever fails, by code that shares nothing with the guard."""
 
+import math
 from pathlib import Path
 
 from hal.guard_reason import GuardReason
@@ -30,6 +31,8 @@ _UNSAVED_S = 0.05
 """Time after a disk's refusal in which the robot may drive: some ticks."""
 _MANOEUVRE = 4.0
 """Factor of the time in which wheels show that they disobey, for a robot that turns and stops in between."""
+_ROLLS_S = 0.5
+"""Time after it was put elsewhere in which wheels that stand seem to disobey."""
 _STARTS_S = 0.1
 """Time after a start in which readings arrive."""
 _BECAUSE: dict[Point, frozenset[str]] = {
@@ -58,6 +61,8 @@ class Rules:
         self._works = False
         self._reasons: frozenset[str] = frozenset()
         self._spoke_at_s = 0.0
+        self.set_down_s = -math.inf
+        """Time at which it was put elsewhere, its wheels at rest."""
 
     def on_start(self, now_s: float) -> None:
         """Note a start of the program."""
@@ -150,6 +155,8 @@ class Rules:
         new, self._reasons = reasons - self._reasons, reasons
         for fault in self.begun:
             new -= TABLE.row(fault.target, fault.kind).reasons
+        if now_s - self.set_down_s < _ROLLS_S:
+            new -= {GuardReason.WHEELS_DISOBEY}
         for point in self._story.points:
             new -= _BECAUSE.get(point, frozenset())
         if new and now_s - self._started_s > _STARTS_S:

@@ -158,6 +158,7 @@ class _Teller:
         if not teacher.is_calm and now_s >= self._story.lasts_s - CALM_S:
             teacher.is_calm = True
             program.set_down()
+            self._rules.set_down_s = now_s
         for command in teacher.update(record):
             self._device.send(command)
         if record.number % _MINUTE_TICKS == 0:
