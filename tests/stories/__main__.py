@@ -32,9 +32,9 @@ _SECONDS_PER_HOUR, _TICKS_PER_S = 3600.0, 100
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Result of the story of a seed."""
+    """Story of a seed, and what came of it."""
 
-    seed: int
+    story: Story
     told: Told
     shortest: Story | None
     """Shrunk story, if something broke."""
@@ -58,7 +58,7 @@ def drive_seed(seed: int, lasts_s: float) -> Outcome:
     """Drive the story of a seed, and shrink it if something breaks."""
     story = story_of(seed, lasts_s)
     came = asyncio.run(told(story))
-    return Outcome(seed, came, asyncio.run(shrunk(story, first_problem)) if came.problems else None)
+    return Outcome(story, came, asyncio.run(shrunk(story, first_problem)) if came.problems else None)
 
 
 def drive_seeds(seeds: Iterable[int], lasts_s: float, processes: int) -> Iterator[Outcome]:
@@ -101,11 +101,11 @@ def main() -> int:
         ticks, lessons, starts = ticks + came.ticks, lessons + came.lessons, starts + came.starts
         acted.update(came.acted)
         happened.update(came.happened)
-        robots[story_of(outcome.seed, words.seconds).robot] += 1
+        robots[outcome.story.robot] += 1
         if outcome.shortest is not None:
             broken += 1
             BROKEN.mkdir(parents=True, exist_ok=True)
-            file = BROKEN / f"{outcome.seed}.yaml"
+            file = BROKEN / f"{outcome.story.seed}.yaml"
             file.write_text(as_text(outcome.shortest), encoding="utf-8")
             print(f"{file}: {came.problems[0]}", flush=True)
         if stories % _TELLS_EVERY == 0:

@@ -36,12 +36,14 @@ _FRONT_BUMPER = 1
 _MOST_TICKS = 32767
 
 
-class _RobotsEnd(CableInterface):
-    """Robot's end, before which a sensor board may fail."""
-
+class _End(CableInterface):
     def __init__(self, cable: Cable, ends: "CanEnds") -> None:
         super().__init__(cable)
         self._ends = ends
+
+
+class _RobotsEnd(_End):
+    """Robot's end, before which a sensor board may fail."""
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
         self._check_open()
@@ -54,12 +56,8 @@ class _RobotsEnd(CableInterface):
             self._ends.on_arrived(self._ends.carried, bytes(frame.data), at_s)
 
 
-class _NotebooksEnd(CableInterface):
+class _NotebooksEnd(_End):
     """Notebook's end, where frames may fail in both directions."""
-
-    def __init__(self, cable: Cable, ends: "CanEnds") -> None:
-        super().__init__(cable)
-        self._ends = ends
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
         """Send a frame through the driver, or later. Raises OSError if the adapter is gone."""
@@ -110,10 +108,10 @@ class CanEnds(Ends):
     speaks_every_s = 0.004
 
     def __init__(self, settings: Kurt2Settings, injection: FaultInjection, chance: random.Random) -> None:
-        super().__init__(settings, injection, chance)
+        super().__init__(injection, chance)
         self.carried = 0
         """Number of the newest CONTROL that the cable carried."""
-        self._kurt2, self._codec = settings, load_codec(settings.can.database)
+        self._settings, self._codec = settings, load_codec(settings.can.database)
 
         def poor(target: Target) -> PoorLink[Frame]:
             return PoorLink(injection, target, chance, self._instead)
@@ -134,13 +132,13 @@ class CanEnds(Ends):
         self._end = _NotebooksEnd(self._cable, self)
 
     def simulated(self, world: WorldSettings, seed: int, wheels: Wheels) -> SimulatedRobot:
-        return SimulatedKurt2(self._kurt2, world, self._robots_bus, seed, wheels=wheels)
+        return SimulatedKurt2(self._settings, world, self._robots_bus, seed, wheels=wheels)
 
     def start_driver(self) -> GuardedRobot:
         self._cable = Cable(self._time.now_s)
         self._robots_bus.reopen()
         self.bus = CanBus("cable", self._open_notebooks_end)
-        return Kurt2(self._kurt2, self.bus, watchdog_clock=self._time.now_s)
+        return Kurt2(self._settings, self.bus, watchdog_clock=self._time.now_s)
 
     def begin(self, fault: Fault) -> None:
         super().begin(fault)

@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 from hal.bus import CanBus
 from hal.guarded_robot import GuardedRobot
-from hal.robot_settings import RobotSettings
 from simbridge.robot.wheels import Wheels
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.worlds.world_settings import WorldSettings
@@ -24,7 +23,7 @@ class Ends(ABC):
     speaks_every_s: float
     """Period of a stranger, and of a diagnosis."""
 
-    def __init__(self, settings: RobotSettings, injection: FaultInjection, chance: random.Random) -> None:
+    def __init__(self, injection: FaultInjection, chance: random.Random) -> None:
         self.on_sent: Callable[[int, bytes], None] = lambda _number, _payload: None
         """Callback with number and payload of each command that the driver sends."""
         self.on_arrived: Callable[[int, bytes, float], None] = lambda _number, _payload, _at_s: None
@@ -33,7 +32,7 @@ class Ends(ABC):
         """Callback with identifier (0 without CAN) and time of the newest readings that arrived at the notebook."""
         self.bus: CanBus | None = None
         """Driver's interface to CAN; None without one."""
-        self._settings, self._injection, self._time, self._chance = settings, injection, injection.time, chance
+        self._injection, self._time, self._chance = injection, injection.time, chance
         self._sent = 0
 
     @abstractmethod

@@ -42,8 +42,8 @@ class LinkedEnds(Ends):
 
     speaks_every_s = 0.05
 
-    def __init__(self, settings: RobotSettings, injection: FaultInjection, chance: random.Random) -> None:
-        super().__init__(settings, injection, chance)
+    def __init__(self, injection: FaultInjection, chance: random.Random) -> None:
+        super().__init__(injection, chance)
         self._in = PoorLink(injection, self.target, chance, self._instead, jitters=True)
         self._out = PoorLink(injection, self.target, chance, self._instead, jitters=True)
         self._made_s = 0.0
@@ -137,7 +137,8 @@ class SerialEnds(LinkedEnds):
     wire = wire.SCHOOL
 
     def __init__(self, settings: RobotSettings, injection: FaultInjection, chance: random.Random) -> None:
-        super().__init__(settings, injection, chance)
+        super().__init__(injection, chance)
+        self._settings = settings
         self._robots_port = _Port(lambda line: self._report("line", line, self._drivers_port.arrive), lambda: None)
         self._drivers_port = _Port(self._send, self._check, self._out.late)
 
@@ -214,8 +215,8 @@ class TopicEnds(LinkedEnds):
     wire = wire.TURTLEBOT
 
     def __init__(self, settings: TurtlebotSettings, injection: FaultInjection, chance: random.Random) -> None:
-        super().__init__(settings, injection, chance)
-        self._base, self._step_s = settings, 0.0
+        super().__init__(injection, chance)
+        self._settings, self._step_s = settings, 0.0
         self._robots_clock = _Clock(self._time.now_s, lambda: self._step_s)
         self._drivers_clock = _Clock(self._time.now_s, injection.wall_clock_step_s)
         self._twists = Twists(settings.twist, settings)
@@ -223,15 +224,15 @@ class TopicEnds(LinkedEnds):
         self._drivers_topics = _Topics(settings, self._send)
 
     def simulated(self, world: WorldSettings, seed: int, wheels: Wheels) -> SimulatedRobot:
-        electronics = TurtlebotElectronics(self._base, self._robots_topics.join(), self._robots_clock)
-        return SimulatedRobot(self._base, world, lambda *_: electronics, seed, wheels=wheels, make_sensors=lidar_of)
+        electronics = TurtlebotElectronics(self._settings, self._robots_topics.join(), self._robots_clock)
+        return SimulatedRobot(self._settings, world, lambda *_: electronics, seed, wheels=wheels, make_sensors=lidar_of)
 
     def start_driver(self) -> GuardedRobot:
-        self._drivers_topics = _Topics(self._base, self._send)
+        self._drivers_topics = _Topics(self._settings, self._send)
         fault = self._injection.acting_on(self.target)
         self._drivers_topics.connected = fault is None or fault.kind != "off"
-        link = TurtlebotLink(self._base, self._drivers_topics.join(), "topics of a story", self._drivers_clock)
-        return LinkedRobot(self._base, link, self._time.now_s)
+        link = TurtlebotLink(self._settings, self._drivers_topics.join(), "topics of a story", self._drivers_clock)
+        return LinkedRobot(self._settings, link, self._time.now_s)
 
     def begin(self, fault: Fault) -> None:
         super().begin(fault)
@@ -251,7 +252,7 @@ class TopicEnds(LinkedEnds):
         self._report(key, payload, partial(self._drivers_topics.carry, key))
 
     def _say(self, fault: Fault, *, over: bool) -> None:
-        ros, stamp_s = self._base.ros, self._robots_clock.wall_s()
+        ros, stamp_s = self._settings.ros, self._robots_clock.wall_s()
         if fault.kind == "alarm":
             level = DiagnosticStatus.OK if over else DiagnosticStatus.ERROR
             status = DiagnosticStatus(level, f"{ros.stops_on_errors_of[0]}_motor", "too hot", "", [])

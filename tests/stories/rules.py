@@ -84,13 +84,8 @@ class Rules:
             # An action that a teacher taught by mistake may be to stand.
             acts = record.decision.driving and _LIMITS.issuperset(record.guard_result.reasons)
             self._works = now_s >= over_s and (self._works or acts or record.decision.cause in ASKING)
-        silent_s = now_s - self._device.judge.heard_at_s
-        # A lease counts by the program's clock, which may run at half speed.
-        longest_s = _SILENT_S * (2 if any(str(fault) == "clock slow" for fault in self.begun) else 1)
-        if moves and story.teaching.phase < AUTONOMOUS and silent_s > longest_s:
-            self.problems.append(f"at {now_s:.2f} s: it drives {silent_s:.2f} s after its teachers' last message")
-        if moves and story.teaching.phase < AUTONOMOUS and self._device.judge.picture_ticks > _PICTURE_TICKS:
-            self.problems.append(f"at {now_s:.2f} s: it drives, unseen for {_PICTURE_TICKS} ticks")
+        if moves and story.teaching.phase < AUTONOMOUS:
+            self._require_teacher(now_s)
         if moves and now_s - unsaved_s > _UNSAVED_S:
             self.problems.append(f"at {now_s:.2f} s: it drives though lessons cannot be saved since {unsaved_s:.2f} s")
         self._explain(record, now_s)
@@ -136,6 +131,16 @@ class Rules:
             self.problems.append(f"{len(lost)} lessons that a teacher was told to be durable are gone")
         if len(set(stored)) != len(stored):
             self.problems.append("a lesson stands twice in the knowledge")
+
+    def _require_teacher(self, now_s: float) -> None:
+        """Complain of a robot that drives though its teachers are silent, or saw nothing for long."""
+        judge = self._device.judge
+        silent_s = now_s - judge.heard_at_s
+        # A lease counts by the program's clock.
+        if silent_s > _SILENT_S * self._witness.clock_slowness(LASTING_S):
+            self.problems.append(f"at {now_s:.2f} s: it drives {silent_s:.2f} s after its teachers' last message")
+        if judge.picture_ticks > _PICTURE_TICKS:
+            self.problems.append(f"at {now_s:.2f} s: it drives, unseen for {_PICTURE_TICKS} ticks")
 
     def _require_words(self, record: TickRecord, now_s: float) -> None:
         """Complain of a robot that is held back and tells its teacher that it drives, or that it needs no resume."""

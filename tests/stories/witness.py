@@ -1,6 +1,7 @@
 """Witness at both ends of the bus and of every tick: envelope, standing until told, and the ticks' accounts."""
 
 import hashlib
+import math
 from typing import NamedTuple
 
 from hal.robot import STANDSTILL, Robot, SensorReadings
@@ -15,11 +16,9 @@ from tests.stories.rig import Rig
 from tests.stories.table import TABLE
 from tests.stories.wire import WheelCommand
 
-REPEATED = ResultCode.REPEATED
 _ROUNDING_S = 1e-6
 _LOOKS_EVERY_S = 0.05
 _SLOWNESS = 2.0
-"""Seconds in one second of a slow clock, also in ages that began while it was slow."""
 _CLOCK_SETTLES_S = 0.1
 """Time after the end of a clock's fault in which it may still jump, back to the truth."""
 _STANDS_M_S = 0.02
@@ -42,8 +41,6 @@ class Witness(RobotProxy):
         self.envelope = Envelope(self.limits, rig.ends.wire)
         self.complaints = self.envelope.violations
         """Complaints about envelope, standstill and ticks."""
-        self.resumes = 0
-        """Accepted commands to resume."""
         self.latched: tuple[float, str] | None = None
         """Time and reason of the guard's first latch since `watch`; None without one."""
         self.drove_at_s: list[float] = []
@@ -52,7 +49,8 @@ class Witness(RobotProxy):
         self._arrivals: list[tuple[float, WheelCommand]] = []
         self._causes: list[tuple[float, tuple[str, ...]]] = []
         self._watches = False
-        self._sensed_at_s = self._clock_faulty_until_s = self._clock_slow_until_s = 0.0
+        self._sensed_at_s = self._clock_faulty_until_s = 0.0
+        self._clock_slow_at_s = -math.inf
         self._must_stand = ""
         self._stops = set[str]()
         """Ids of the stops of teachers since the last resume."""
@@ -85,8 +83,8 @@ class Witness(RobotProxy):
         self._sensed_at_s = self._time.now_s()
         clock = self._rig.injection.of("clock")
         if clock is not None and clock.kind == "slow":
-            self._clock_slow_until_s = self._sensed_at_s + self.limits.controller_watchdog_s
-        self.envelope.clock_slowness = _SLOWNESS if self._sensed_at_s < self._clock_slow_until_s else 1.0
+            self._clock_slow_at_s = self._sensed_at_s
+        self.envelope.clock_slowness = self.clock_slowness(self.limits.controller_watchdog_s)
         if clock is not None:
             self._clock_faulty_until_s = self._sensed_at_s + _CLOCK_SETTLES_S
         self.envelope.clock_is_faulty = self._sensed_at_s < self._clock_faulty_until_s
@@ -100,22 +98,7 @@ class Witness(RobotProxy):
         moves = record.guard_result.wheel_speeds != STANDSTILL
         if moves and not record.decision.driving:
             self._complain(f"drives though {cause}")
-        done = {each.command_id for each in record.results if each.accepted and each.outcome.code is not REPEATED}
-        for each in record.commands:
-            if isinstance(each, Resume) and each.command_id in done:
-                self._must_stand = ""
-                self._stops.clear()
-                self.resumes += 1
-                if each.seen_tick is not None and each.seen_tick < self._stop_tick:
-                    self._complain("a stop is lifted by a teacher who had not seen it")
-            elif isinstance(each, Stop) and each.press_id is None:
-                self._must_stand = f"{each.teacher} said stop"
-                self._ended_press = self._newest_press
-                if each.command_id not in self._stops:  # a copy is not a newer one
-                    self._stops.add(each.command_id)
-                    self._stop_tick = record.tick
-            elif isinstance(each, Drive):
-                self._newest_press = max(self._newest_press, each.press_id)
+        self._note_commands(record)
         # A teacher's hand tells it to drive, until it lets go.
         by_hand = cause is DecisionCause.TEACHER and self._newest_press > self._ended_press
         if moves and self._must_stand and not by_hand:
@@ -132,6 +115,10 @@ class Witness(RobotProxy):
         elif self._watches:
             # A layer that wants to drive is not why the robot stands.
             self._causes.append((now_s, (*(() if record.decision.driving else (cause,)), *record.guard_result.reasons)))
+
+    def clock_slowness(self, within_s: float) -> float:
+        """Return the most seconds that one of the driver's clock took in the last `within_s`."""
+        return _SLOWNESS if self._time.now_s() - self._clock_slow_at_s < within_s else 1.0
 
     def standstills(self, begin_s: float, end_s: float) -> list[StandstillInterval]:
         """Return the spans in which the robot had to stand: it was told to, or its own watchdog had expired."""
@@ -169,6 +156,25 @@ class Witness(RobotProxy):
         if latched is not None:
             self._note_latch(now_s, latched)
         self.envelope.on_sent(number, now_s, payload, now_s - self._sensed_at_s, latched=latched is not None)
+
+    def _note_commands(self, record: TickRecord) -> None:
+        """Note stops, presses and resumes of a tick."""
+        resumed = {each.command_id for each in record.results if each.code is ResultCode.RESUMED}
+        for each in record.commands:
+            match each:
+                case Resume(seen_tick=seen) if each.command_id in resumed:
+                    self._must_stand = ""
+                    self._stops.clear()
+                    if seen is not None and seen < self._stop_tick:
+                        self._complain("a stop is lifted by a teacher who had not seen it")
+                case Stop(press_id=None):
+                    self._must_stand = f"{each.teacher} said stop"
+                    self._ended_press = self._newest_press
+                    if each.command_id not in self._stops:  # a copy is not a newer one
+                        self._stops.add(each.command_id)
+                        self._stop_tick = record.tick
+                case Drive(press_id=press_id):
+                    self._newest_press = max(self._newest_press, press_id)
 
     def _note_latch(self, now_s: float, reason: str) -> None:
         self._must_stand = reason
