@@ -67,7 +67,7 @@ class LinkedRobot(GuardedRobot):
         self._link: Final = link
         watch = InfraredWatch((_BOARD,), settings.guard.frozen_infrared_s)
         super().__init__(settings, LinkPort(link), watch, watchdog_clock)
-        self._board = watch.board(_BOARD)
+        self._board, self._floor_counts = watch.board(_BOARD), settings.infrared.floor_counts
         self._times_s.extend([-math.inf] * len(self._counts))
         self._cycle_s = settings.cycle_s
         self._rejected = 0
@@ -120,6 +120,8 @@ class LinkedRobot(GuardedRobot):
             self._counts[first:end] = counts
             self._board.still_s = 0.0
             arrivals.infrared_changed = True
+        elif max(counts) <= self._floor_counts:
+            self._board.still_s = 0.0  # with nothing in view a sensor without noise repeats itself
         self._times_s[first:end] = [at_s] * len(counts)
         return True
 

@@ -24,13 +24,8 @@ class PlanePose(NamedTuple):
 
     def moved(self, forward_m: float, turn_rad: float) -> "PlanePose":
         """Return the pose after an arc of `forward_m`, taken along its middle heading, which counts whole turns."""
-        middle_rad = self.heading_rad + turn_rad / 2
-        cos, sin = cos_sin(middle_rad)
-        return PlanePose(
-            x_m=self.x_m + forward_m * cos,
-            y_m=self.y_m + forward_m * sin,
-            heading_rad=self.heading_rad + turn_rad,
-        )
+        cos, sin = cos_sin(self.heading_rad + turn_rad / 2)
+        return PlanePose(self.x_m + forward_m * cos, self.y_m + forward_m * sin, self.heading_rad + turn_rad)
 
 
 class WheelOdometry:

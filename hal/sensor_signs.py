@@ -108,11 +108,12 @@ class SensorLimits(NamedTuple):
 
 def sensor_limits(robot: RobotSettings) -> SensorLimits:
     """Return the limits of the sensors of a kind of robot."""
-    infrared = robot.infrared
+    infrared, frozen_s = robot.infrared, robot.guard.frozen_infrared_s
     return SensorLimits(
         lowest=infrared.floor_counts * LOWEST,
         highest=infrared.plateau_counts * HIGHEST,
-        stuck_ticks=round(STUCK_TIMES * robot.guard.frozen_infrared_s / robot.cycle_s),
+        # Never for a sensor whose floor is 0: it repeats that for as long as it sees nothing.
+        stuck_ticks=round(STUCK_TIMES * frozen_s / robot.cycle_s) if infrared.floor_counts else 1 << 40,
         dark_counts=_DARK_RATIO * infrared.counts_at(infrared.fold_back_to_m),
         numerator_counts_m=infrared.numerator_counts_m,
         offset_m=infrared.offset_m,

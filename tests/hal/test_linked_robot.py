@@ -20,7 +20,7 @@ from hal.robot_link import (
 from tests.hal.helpers import ROBOT, SENSORS, TICK_S
 from tests.hal.linked_scene import SLOW, Scene
 
-LIMITS = ROBOT.guard
+LIMITS, FLOOR = ROBOT.guard, ROBOT.infrared.floor_counts
 
 
 @pytest.fixture
@@ -200,18 +200,28 @@ def test_first_wheel_report_tells_no_speed(scene: Scene) -> None:
         assert not scene.robot.drive(STANDSTILL, scene.now_s, scene.now_s).latched
 
 
-def test_readings_that_repeat_themselves_stop_the_robot(scene: Scene) -> None:
+def drive_by_equal(scene: Scene, counts: int) -> GuardResult:
+    """Drive while the distance sensors repeat themselves; return what comes of it."""
     scene.drive()
     result = scene.tick()
     for _ in range(round(LIMITS.frozen_infrared_s / TICK_S) + 2):
         scene.now_s += TICK_S
         scene.hear()
-        scene.link.reports[-3] = RangeReport(scene.now_s, 0, (100,) * len(SENSORS))
+        scene.link.reports[-3] = RangeReport(scene.now_s, 0, (counts,) * len(SENSORS))
         scene.robot.sense(scene.now_s)
         result = scene.robot.drive(SLOW, scene.now_s, scene.now_s)
         scene.speeds = result.wheel_speeds
-    assert result.reasons == (GuardReason.INFRARED_FROZEN,)
+    return result
+
+
+@pytest.mark.parametrize("above", [1, 30])
+def test_readings_that_repeat_themselves_stop_the_robot(scene: Scene, above: int) -> None:
+    assert drive_by_equal(scene, FLOOR + above).reasons == (GuardReason.INFRARED_FROZEN,)
     assert "distance sensors of the robot repeated themselves" in scene.robot.health.alarm
+
+
+def test_readings_with_nothing_in_view_may_repeat_themselves(scene: Scene) -> None:
+    assert drive_by_equal(scene, FLOOR) == GuardResult(SLOW, (), latched=False)
 
 
 def test_close_brakes_and_closes_the_link(scene: Scene) -> None:

@@ -173,7 +173,10 @@ class SerialEnds(LinkedEnds):
         )
 
     def _repeated(self, old: bytes, message: bytes) -> bytes:
-        return _line(b" ".join(wire.words_of(message)[:6] + wire.words_of(old)[6:]))
+        readings = wire.words_of(old)[6:]
+        if {*readings} == {b"0"}:
+            readings[-1] = b"1"
+        return _line(b" ".join(wire.words_of(message)[:6] + readings))
 
     def _has_ranges(self, message: bytes) -> bool:
         return wire.words_of(message)[:1] == [b"sense"]

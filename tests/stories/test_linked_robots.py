@@ -50,11 +50,14 @@ async def test_a_guard_that_lets_go_is_seen(
     assert any(complaint in each for each in problems), problems
 
 
-@pytest.mark.parametrize("kind", ["alarm", "stranger"])
+@pytest.mark.parametrize(
+    ("robot", "target", "kind"),
+    [("turtlebot", "topics", "alarm"), ("turtlebot", "topics", "stranger"), ("school", "serial", "stuck")],
+)
 async def test_a_driver_that_does_not_listen_is_seen(
-    kind: Kind, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    robot: RobotKind, target: Target, kind: Kind, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(LinkedRobot, "_sound_alarms", lambda *_, **__: None)
-    faults = tuple(Event(at_s=at_s, target="topics", kind=kind, lasts_s=0.5) for at_s in (3.0, 5.0, 7.0))
-    story = Story(seed=2, lasts_s=14.0, robot="turtlebot", task="fleeing", taught=True, faults=faults)
-    assert f"topics {kind}: it did not stand" in (await tell(story, tmp_path)).problems
+    faults = tuple(Event(at_s=at_s, target=target, kind=kind, lasts_s=2.5) for at_s in (3.0, 7.0, 11.0))
+    story = Story(seed=2, lasts_s=20.0, robot=robot, task="fleeing", taught=True, faults=faults)
+    assert f"{target} {kind}: it did not stand" in (await tell(story, tmp_path)).problems
