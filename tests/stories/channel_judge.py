@@ -7,7 +7,7 @@ from kurt2rt.channel.protocol.requests import Request, StopRequest, StreamReques
 from kurt2rt.channel.server.reply import Reply, ReplyStatus
 from kurt2rt.channel.server.request_handler import Sender
 from kurt2rt.core.outcome import ResultCode
-from kurt2rt.core.teaching.commands import Drive
+from kurt2rt.core.teaching.commands import Drive, HoldAction
 
 _STREAM_TICKS, _MOVING_TICKS, _COMMAND_TICKS = 40, 100, 300
 """Greatest ages of the state that a teacher had seen, a second statement of the robot's."""
@@ -32,7 +32,8 @@ class ChannelJudge:
         self._ran, self._ran_at = 0, dict[int, int]()
         self._numbers: dict[str, int] = {}
         self._commands: set[bytes] = set()
-        self._presses: dict[str, tuple[int, int]] = {}
+        self.presses: dict[str, tuple[int, int]] = {}
+        """Newest press of each device, and the ticks that had run at its newest message."""
         self._seen = _NEVER
 
     def on_tick(self, tick: int) -> None:
@@ -68,11 +69,11 @@ class ChannelJudge:
                 yield "taken again, or after a newer one"
             self._note_number(sender)
             self._seen = max(self._seen, self._ran_at.get(seen, 0))
-            if isinstance(request.command, Drive):
-                press, ran = self._presses.get(sender.device, (0, 0))
+            if isinstance(request.command, Drive | HoldAction):
+                press, ran = self.presses.get(sender.device, (0, 0))
                 if press == request.command.press_id and self._ran - ran > _PRESS_TICKS:
                     yield "taken though its press is over"
-                self._presses[sender.device] = request.command.press_id, self._ran
+                self.presses[sender.device] = request.command.press_id, self._ran
         if request.boot != self._boot:
             yield "taken though it was meant for another start of the program"
         if tick - seen > longest:

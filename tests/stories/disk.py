@@ -55,8 +55,9 @@ class FaultyJournal(Journal):
             raise from_sqlite(error, self.path)
         if self.dies == "killed_before_commit":
             raise KilledError
+        is_elsewhere = fault is not None and fault.kind == "wrong"
+        self.refused_at_s = (self.refused_at_s or self.injection.time.now_s()) if is_elsewhere else None
         receipts = super().append(entries, statistics)
-        self.refused_at_s = None
         if self.dies == "killed_after_commit":
             raise KilledError
         return receipts

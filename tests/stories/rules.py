@@ -12,7 +12,7 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.stories.device import Device
 from tests.stories.story import CALM_S, Story
-from tests.stories.table import TABLE, Fault, case_of
+from tests.stories.table import TABLE, Fault
 from tests.stories.witness import Witness
 
 WORKS_AGAIN_S = 5.0
@@ -71,7 +71,7 @@ class Rules:
     def on_error(self, error: str) -> None:
         """Complain of an error that ended the program, unless a clock or a tick failed for good."""
         if not any(
-            fault.target in ("clock", "tick") and case_of(fault.target, fault.kind).must.ends_by == "restart"
+            fault.target in ("clock", "tick") and TABLE.cases[fault.target][fault.kind].ends_by == "restart"
             for fault in self.begun
         ):
             self.problems.append(f"the program ended by {error}")

@@ -2,7 +2,7 @@
 
 import random
 from pathlib import Path
-from typing import get_args
+from typing import Literal, get_args
 
 import yaml
 
@@ -20,11 +20,12 @@ _GAP_S = 0.5
 
 
 class Teaching(Settings):
-    """Teacher of a story: phase, time of a reaction in s, and share of wrong answers."""
+    """Teacher of a story: phase, time of a reaction in s, share of wrong answers, and whether a finger stays down."""
 
     phase: int = 2
     reaction_s: float = 0.5
     error_rate: float = 0.0
+    by: Literal["press", "hold"] = "press"
 
 
 class Event(Settings):
@@ -36,9 +37,7 @@ class Event(Settings):
     lasts_s: float
 
     def fault(self) -> Fault:
-        """Return the fault, with period and delay of its row."""
-        row = TABLE.row(self.target, self.kind)
-        return Fault(self.target, self.kind, self.at_s, self.at_s + self.lasts_s, row.period_s, row.delay_s)
+        return TABLE.fault(self.target, self.kind, self.at_s, self.at_s + self.lasts_s)
 
 
 class Story(Settings):
@@ -109,6 +108,7 @@ def story_of(seed: int, lasts_s: float) -> Story:
             phase=chance.choice((1, 2, 2, 3, 4, 5)),
             reaction_s=round(chance.uniform(0.2, 2.0), 2),
             error_rate=chance.choice((0.0, 0.05, 0.2)),
+            by=chance.choice(("press", "hold")),
         ),
         faults=tuple(sorted(faults, key=lambda each: each.at_s)),
     )

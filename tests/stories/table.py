@@ -146,21 +146,9 @@ class Fault(NamedTuple):
         return self.kind != "intermittent" or int((now_s - self.begin_s) / self.period_s) % 2 == 0
 
 
-class Schedule(Settings):
-    """Times of a drill."""
-
-    begins_at_s: Seconds
-    lasts_s: Seconds
-    settles_s: Seconds
-    """Time after the fault in which the robot may drive again by itself."""
-    drives_again_s: Seconds
-    """Time to drive again after the teacher's command."""
-
-
 class FaultTable(Settings):
     """Table of twelve targets and seven kinds, and of what only stories have."""
 
-    schedule: Schedule
     envelopes: dict[RobotKind, Limits]
     parts: dict[RobotKind, tuple[Target, ...]]
     """Targets that one robot has alone; it has all those that no robot has alone."""
@@ -171,30 +159,14 @@ class FaultTable(Settings):
         """Return the row of a fault, of drills or of stories alone."""
         return self.cases.get(target, {}).get(kind) or self.stories[target][kind]
 
+    def fault(self, target: Target, kind: Kind, begin_s: float, end_s: float) -> Fault:
+        """Return a fault with period and delay of its row."""
+        row = self.row(target, kind)
+        return Fault(target, kind, begin_s, end_s, row.period_s, row.delay_s)
+
     def has(self, robot: RobotKind, target: Target) -> bool:
         """Return whether a robot has a target."""
         return all(robot == each or target not in parts for each, parts in self.parts.items())
 
 
-class Case(NamedTuple):
-    """Cell of the table."""
-
-    target: Target
-    kind: Kind
-    must: DrillRow
-
-    def __str__(self) -> str:
-        return f"{self.target} {self.kind}"
-
-    def at(self, begin_s: float, lasts_s: float) -> "Fault":
-        """Return the fault of this case, for as long as its row says, or else for `lasts_s`."""
-        end_s = begin_s + (self.must.drill_lasts_s or lasts_s)
-        return Fault(self.target, self.kind, begin_s, end_s, self.must.period_s, self.must.delay_s)
-
-
 TABLE = load_settings(Path(__file__).with_name("table.yaml"), FaultTable)
-CASES = tuple(Case(target, kind, row) for target, rows in TABLE.cases.items() for kind, row in rows.items())
-
-
-def case_of(target: Target, kind: Kind) -> Case:
-    return Case(target, kind, TABLE.cases[target][kind])

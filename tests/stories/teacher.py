@@ -6,6 +6,7 @@ from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, TeacherSettings
+from kurt2rt.core.teacher_settings import QUICK_TEACHER
 from kurt2rt.core.teaching.commands import (
     Appraise,
     BeginSession,
@@ -22,7 +23,7 @@ from kurt2rt.core.teaching.commands import (
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
-from kurt2rt.teacher.scripted.teacher import ScriptedTeacher
+from kurt2rt.teacher.scripted.build import build_teacher
 from tests.stories.device import TEACHER
 from tests.stories.program import Program
 from tests.stories.story import Teaching
@@ -33,8 +34,10 @@ _RESUMES_EVERY_S = 1.0
 _STOPS_EVERY_S, _UNDOES_EVERY_S, _SIGNALS_EVERY_S = 45.0, 180.0, 20.0
 _REGRETS = 0.2
 """Share of resumes after which he says stop at once, which may overtake the resume on the way."""
-_TAKES_EVERY_S = 0.2
+_TAKES_EVERY_S, _STOPS_ANOTHER_EVERY_S = 2.0, 3.0
+"""Times in which he takes the robot back from another teacher, and tells it to stop."""
 _WATCHES_EVERY_S = 0.1
+_HOLDS_S = 1.0
 
 
 class StoryTeacher:
@@ -47,11 +50,15 @@ class StoryTeacher:
         robot = program.robot
         self._cycle_s = robot.cycle_s
         self._phase = Phase(teaching.phase)
-        self._scripted = ScriptedTeacher(
-            task.policy.build(robot.infrared),
+        profile = QUICK_TEACHER.model_copy(
+            update={"answers_by": teaching.by, "corrects_by": teaching.by, "hold_s": _HOLDS_S}
+        )
+        teacher = TeacherSettings(reaction_s=teaching.reaction_s, patience_s=0.3, error_rate=teaching.error_rate)
+        lessons = task.teaching.model_copy(update={"teacher": teacher, "profile": profile})
+        self._scripted = build_teacher(
+            task.model_copy(update={"teaching": lessons}),
+            robot,
             tuple(load_task_repertoire(task, robot)),
-            TeacherSettings(reaction_s=teaching.reaction_s, patience_s=0.3, error_rate=teaching.error_rate),
-            period_s=robot.cycle_s,
             seed=chance.getrandbits(32),
             session=program.next_id(),
         )
@@ -72,6 +79,8 @@ class StoryTeacher:
     def _commands(self, record: TickRecord) -> list[Command]:
         chance = self._chance
         if self._program.runtime.handler.authority.teacher not in (None, TEACHER):
+            if self._happens(_STOPS_ANOTHER_EVERY_S):
+                return [Stop("", TEACHER)]
             return [Take("", TEACHER)] if self._is_due(record.tick, _TAKES_EVERY_S) else []
         if record.number == 1:
             return [BeginSession("", TEACHER, self._program.next_id()), SetPhase("", TEACHER, self._phase)]

@@ -18,7 +18,7 @@ from kurt2rt.core.teaching.commands import Drive, Resume, Stop
 from tests.stories.device import TEACHER, Device
 from tests.stories.program import Program
 from tests.stories.rig import CORRIDOR, ROBOT, Rig
-from tests.stories.table import case_of
+from tests.stories.table import TABLE
 from tests.stories.witness import StandstillInterval, Witness
 
 AHEAD = WheelSpeeds(0.2, 0.2)
@@ -139,7 +139,7 @@ def test_each_go_on_a_blocked_bus_sends_two_old_frames_at_most(rig: Rig, witness
             witness.drive(AHEAD, rig.time.now_s(), rig.time.now_s())
 
     drive(1.0)
-    rig.injection.plan(case_of("bus_out", "delayed").at(1.0, 8.0))
+    rig.injection.plan(TABLE.fault("bus_out", "delayed", 1.0, 9.0))
     for goes, until_s in enumerate((2.0, 3.0, 4.0), 1):
         drive(until_s)
         assert robot.health.latched == GuardReason.BUS_BLOCKED
