@@ -4,6 +4,7 @@ import re
 from collections.abc import Awaitable, Callable, Iterator
 
 from tests.stories.story import CALM_S, Event, Story
+from tests.stories.table import TABLE
 
 Breaks = Callable[[Story], Awaitable[str]]
 """Drives a story and returns its first problem; empty without one."""
@@ -87,6 +88,9 @@ def _smaller(story: Story) -> Iterator[Story]:
     """Yield stories with one thing less."""
     yield _without_waits(story)
     plain = Story(seed=story.seed, lasts_s=story.lasts_s)
+    if story.robot != plain.robot:
+        faults = tuple(each for each in story.faults if TABLE.has(plain.robot, each.target))
+        yield _with(story, robot=plain.robot, faults=faults)
     for name in _TRAITS:
         if getattr(story, name) != getattr(plain, name):
             yield _with(story, **{name: getattr(plain, name)})

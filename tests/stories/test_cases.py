@@ -35,9 +35,6 @@ async def test_fault_cases_lead_to_their_rows_for_other_seeds(target: Target, ki
         assert await drilled(target, kind, tmp_path / str(seed), seed=seed) == [], seed
 
 
-STANDS = {"leads_to": "stands", "because": "unknown", "within_s": 0.1}
-
-
 @pytest.mark.parametrize(
     ("target", "kind", "changes", "complaint"),
     [
@@ -50,7 +47,7 @@ STANDS = {"leads_to": "stands", "because": "unknown", "within_s": 0.1}
         ("tick", "stuck", {"leads_to": "stutters"}, "must go on in between"),
         ("tick", "stuck", {"leads_to": "drives_on"}, "must drive on, stood for 1"),
         ("tick", "stuck", {"counts": "junk frames"}, "no junk frames were counted"),
-        ("tick", "wrong", STANDS, "must stand because of ('unknown',), did not"),
+        ("tick", "wrong", {"leads_to": "stands", "within_s": 0.1}, "must stand because of (), did not"),
         ("tick", "wrong", {"ends_by": "resume"}, "must wait for resume when the fault is over, drove by itself"),
         ("tick", "wrong", {"drill_lasts_s": 1e-9}, "nothing failed"),
         ("bus_out", "delayed", {"old_frames": 0}, "old set points arrived at the robot, allowed are 0"),

@@ -110,12 +110,9 @@ async def test_shrinking_leaves_what_breaks() -> None:
         targets = {each.target for each in tried.faults}
         return f"at {tries}.5 s /tmp/{tries} breaks" if {"encoders", "bus_out"} <= targets else ""
 
-    shortest = await shrunk(story.model_copy(update={"faults": faults}), breaks)
+    shortest = await shrunk(story.model_copy(update={"robot": "school", "faults": faults}), breaks)
     assert [each.target for each in shortest.faults] == ["encoders", "bus_out"]
     assert all(each.lasts_s < 0.1 for each in shortest.faults)
-    assert (shortest.world, shortest.points, shortest.teaching) == (
-        "a",
-        (),
-        Teaching(phase=2, reaction_s=0.5, error_rate=0.0),
-    )
+    plain = shortest.robot, shortest.world, shortest.points, shortest.teaching
+    assert plain == ("kurt2", "a", (), Teaching(phase=2, reaction_s=0.5, error_rate=0.0))
     assert tries < 80
