@@ -120,7 +120,7 @@ class LinkedRobot(GuardedRobot):
             self._counts[first:end] = counts
             self._board.still_s = 0.0
             arrivals.infrared_changed = True
-        elif max(counts) <= self._floor_counts:
+        elif max(self._counts) <= self._floor_counts:
             self._board.still_s = 0.0  # with nothing in view a sensor without noise repeats itself
         self._times_s[first:end] = [at_s] * len(counts)
         return True

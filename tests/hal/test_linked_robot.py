@@ -201,13 +201,14 @@ def test_first_wheel_report_tells_no_speed(scene: Scene) -> None:
 
 
 def drive_by_equal(scene: Scene, counts: int) -> GuardResult:
-    """Drive while the distance sensors repeat themselves; return what comes of it."""
+    """Drive while the distance sensors repeat themselves, of which one sees something; return what comes of it."""
     scene.drive()
     result = scene.tick()
     for _ in range(round(LIMITS.frozen_infrared_s / TICK_S) + 2):
         scene.now_s += TICK_S
         scene.hear()
-        scene.link.reports[-3] = RangeReport(scene.now_s, 0, (counts,) * len(SENSORS))
+        scene.link.reports[-3] = RangeReport(scene.now_s, 0, (counts,))
+        scene.link.reports.append(RangeReport(scene.now_s, 1, (FLOOR,) * (len(SENSORS) - 1)))
         scene.robot.sense(scene.now_s)
         result = scene.robot.drive(SLOW, scene.now_s, scene.now_s)
         scene.speeds = result.wheel_speeds
