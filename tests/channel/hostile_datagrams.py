@@ -1,8 +1,11 @@
 """Datagrams of strangers and of a faulty device, drawn from one seed."""
 
+import math
 import random
+import socket
 import struct
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any
 
 import aiocoap
@@ -12,6 +15,7 @@ from aiocoap.optiontypes import OpaqueOption
 from kurt2rt.channel.protocol.codec import BODIES, PATHS, build_request, decode_request, encode_request
 from kurt2rt.channel.protocol.requests import Request
 from kurt2rt.channel.security.oscore_context import OscoreContext
+from kurt2rt.channel.server.datagram_filter import TokenBucket
 from kurt2rt.core.decision.goal import PartialGoal
 from kurt2rt.core.message_fields import WireError
 from kurt2rt.core.rla.rla import Phase
@@ -36,6 +40,26 @@ _RAW = (
     *(b"\x7b" + b"\x00" * 7 + b"\xff", b"\xbf\xff", b"\xd9\xd9\xf7\x80", b"\xc2\x58\xff" + b"\xff" * 255),
     *(b"\xd8\x1c\x81\xd8\x1d\x00", b"\xff", b"\x80\x80", b"\x62\xc3\x28"),
 )
+
+UNLIMITED = TokenBucket(math.inf, 0.0)
+"""Bucket that lets all strangers in."""
+
+
+def outside() -> socket.socket:
+    """Return the socket of a sender outside the robot's program."""
+    sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    sender.setblocking(False)
+    sender.bind(("127.0.0.1", 0))
+    return sender
+
+
+def drained(sender: socket.socket) -> list[bytes]:
+    """Return the datagrams that came back since the last call."""
+    came = []
+    with suppress(BlockingIOError):
+        while True:
+            came.append(sender.recv(65_536))
+    return came
 
 
 class HostileDatagrams:
@@ -103,17 +127,15 @@ class HostileDatagrams:
         chance = self._chance
         values: dict[str, Any] = {
             "boot": boot,
-            "seen": tick,
-            "seen_tick": tick,
+            **dict.fromkeys(("seen", "seen_tick"), tick),
             "command_id": chance.randbytes(8),
             "press_id": chance.randrange(2**40),
-            "left_m_s": 0.2,
-            "right_m_s": 0.2,
+            **dict.fromkeys(("left_m_s", "right_m_s", "dx_m", "dy_m", "x_m", "y_m", "heading_rad"), 0.2),
+            **dict.fromkeys(("decision_tick", "lesson", "to", "world", "task")),
             "action": "forward",
             "appraisal": "bad",
             "behaviour": "turn_left",
             "ticks": 50,
-            "decision_tick": None,
             "level": "basic",
             "alternative": False,
             "segments": tuple(range(chance.randrange(4))),
@@ -121,27 +143,18 @@ class HostileDatagrams:
             "goal": PartialGoal((("x_m", 1.0), ("wall_left", 1.0)), 0.1),
             "value": 1,
             "rla_id": 1,
-            "lesson": None,
             "phase": chance.choice(list(Phase)),
             "name": "evening",
-            "to": None,
             "label": "a",
             "count": 3,
             "form": chance.choice(("table", "package")),
             "offset": chance.randrange(2**20),
-            "world": None,
-            "task": None,
             "fresh": False,
             "times": 3,
             "percent": 40,
             "upload": chance.randbytes(8),
             "part": b"part",
             "sha256": chance.randbytes(32),
-            "dx_m": 0.1,
-            "dy_m": 0.1,
-            "x_m": 1.0,
-            "y_m": 1.0,
-            "heading_rad": 0.0,
         }
         return build_request(path, {name: values[name] for name in BODIES[path]})
 

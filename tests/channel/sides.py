@@ -8,6 +8,25 @@ from aiocoap import oscore
 from aiocoap.message import Direction
 
 from kurt2rt.channel.security.oscore_context import OscoreContext
+from kurt2rt.channel.security.pairing import Pairing
+
+
+class Sides:
+    """A device and its robot."""
+
+    def __init__(self, pairing: Pairing) -> None:
+        self.device, self.robot = OscoreContext(pairing.device.folder), OscoreContext(pairing.teacher)
+
+    def datagram(self, message: aiocoap.Message, token: bytes = b"12345678") -> bytes:
+        """Return a request of the device in its form on the wire."""
+        outer, _ = self.device.protect(message)
+        outer.mid, outer.mtype, outer.token = 7, aiocoap.NON, token
+        data: bytes = outer.encode()
+        return data
+
+    def close(self) -> None:
+        self.device.close()
+        self.robot.close()
 
 
 def carried(message: Any) -> Any:

@@ -2,16 +2,15 @@
 
 import asyncio
 import random
-import socket
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 import aiocoap
 import pytest
 
-from tests.channel.hostile_datagrams import HostileDatagrams
+from tests.channel.hostile_datagrams import UNLIMITED, HostileDatagrams, drained, outside
 from tests.channel.jumping_loop import run_jumping
-from tests.channel.protocol.test_fuzz import _AllMayPass
 from tests.channel.robot_at_work import RobotAtWork, robot_at_work
 
 _AT_MOST = 3
@@ -30,26 +29,14 @@ def discovery(kind: Any, token: bytes, number: int, **block: Any) -> bytes:
 async def answered(at_work: RobotAtWork, datagrams: list[bytes]) -> list[int]:
     """Bytes that came back for each, which the address did not confirm."""
     gate: Any = at_work.channel.endpoint._filter
-    gate._strangers = _AllMayPass()
-    senders = []
-    for datagram in datagrams:
-        sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        sender.setblocking(False)
-        sender.sendto(datagram, ("127.0.0.1", at_work.port))
-        senders.append(sender)
-        await asyncio.sleep(0.01)
-    await asyncio.sleep(_RETRIES_S)
-    return [_bytes_of(sender) for sender in senders]
-
-
-def _bytes_of(sender: socket.socket) -> int:
-    count = 0
-    with sender:
-        while True:
-            try:
-                count += len(sender.recv(65_536))
-            except BlockingIOError:
-                return count
+    gate._strangers = UNLIMITED
+    with ExitStack() as opened:
+        senders = [opened.enter_context(outside()) for _ in datagrams]
+        for sender, datagram in zip(senders, datagrams, strict=True):
+            sender.sendto(datagram, ("127.0.0.1", at_work.port))
+            await asyncio.sleep(0.01)
+        await asyncio.sleep(_RETRIES_S)
+        return [sum(map(len, drained(sender))) for sender in senders]
 
 
 @pytest.mark.parametrize("kind", [aiocoap.CON, aiocoap.NON], ids=["con", "non"])

@@ -11,7 +11,7 @@ from kurt2rt.channel.security.pairing import pair
 from kurt2rt.channel.server.endpoint import open_endpoint
 from kurt2rt.teacher.client.transport import open_requests
 from tests.channel.missing_family import remove_family
-from tests.channel.server.test_endpoint import Site, robot_at
+from tests.channel.server.test_endpoint import Site, must_answer
 
 
 @pytest.mark.parametrize("sockets_open", [False, True])
@@ -20,11 +20,7 @@ async def test_endpoint_without_ipv6_answers_over_ipv4(
     monkeypatch: pytest.MonkeyPatch, listens: str, asked: str, sockets_open: bool
 ) -> None:
     remove_family(monkeypatch, socket.AF_INET6, sockets_open=sockets_open)
-    async with robot_at(listens) as robot:
-        sender = await robot.sender(asked)
-        token = sender.post("echo", b"forward")
-        answer = await sender.answer()  # a connected socket takes it from the asked address alone
-        assert (answer.token, answer.payload) == (token, b"forward")
+    await must_answer(listens, asked)
 
 
 async def test_endpoint_without_ipv6_has_no_ipv6_address(monkeypatch: pytest.MonkeyPatch) -> None:

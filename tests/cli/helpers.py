@@ -131,13 +131,18 @@ class Running:
 
 @contextmanager
 def running(
-    *words: str, folder: Path, environment: Mapping[str, str] = MappingProxyType({}), fresh: bool = False
+    *words: str,
+    folder: Path,
+    environment: Mapping[str, str] = MappingProxyType({}),
+    fresh: bool = False,
+    module: str = "kurt2rt.cli.main",
 ) -> Iterator[Running]:
     """Start `kurt2rt ...` in a folder, with this in its environment, too; what is left of it at the end is killed.
 
     `fresh`: with an interpreter of its own; else it is forked from one that has imported everything, if there is one.
+    `module`: another program than that of `kurt2rt`.
     """
-    with started("kurt2rt.cli.main", *words, folder=folder, environment=environment, fresh=fresh) as process:
+    with started(module, *words, folder=folder, environment=environment, fresh=fresh) as process:
         try:
             yield Running(process)
         finally:

@@ -2,6 +2,7 @@ import json
 import random
 import threading
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ from aiocoap import oscore
 from kurt2rt.channel.security.context_folder import ContextFolder, CredentialsError
 from kurt2rt.channel.security.oscore_context import CHUNK, OscoreContext
 from kurt2rt.channel.security.pairing import Pairing, renew
-from tests.channel.sides import answer_challenge, ask, ask_until_fresh, sequence_of
+from tests.channel.sides import Sides, answer_challenge, ask, ask_until_fresh, sequence_of
 from tests.cli.helpers import ROOT, started
 from tests.patience import PATIENCE_S
 
@@ -96,26 +97,19 @@ def test_killed_over_and_over_it_never_uses_a_number_twice(pairing: Pairing, kil
             assert child.stderr.read() == ""
         used += [int(line) for line in said if line.endswith("\n")]
     assert used == sorted(set(used))
-    with_state_lost = OscoreContext(folder)
-    robot = OscoreContext(pairing.teacher)
-    assert with_state_lost.sender_sequence_number > used[-1]
-    assert ask_until_fresh(with_state_lost, robot, "still the same teacher") == "still the same teacher"
-    with_state_lost.close()
-    robot.close()
+    with closing(Sides(pairing)) as with_state_lost:
+        assert with_state_lost.device.sender_sequence_number > used[-1]
+        assert ask_until_fresh(with_state_lost.device, with_state_lost.robot, "same teacher") == "same teacher"
 
 
-def test_context_after_kill_refuses_replay_until_challenge(pairing: Pairing) -> None:
-    device = OscoreContext(pairing.device.folder)
-    robot = OscoreContext(pairing.teacher)
-    answer_challenge(device, robot)
-    robot.abandon()  # leaves the folder as a kill does: the reservation, and a window that is not known
-    robot = OscoreContext(pairing.teacher)
+def test_context_after_kill_refuses_replay_until_challenge(sides: Sides, pairing: Pairing) -> None:
+    answer_challenge(sides.device, sides.robot)
+    sides.robot.abandon()  # leaves the folder as a kill does: the reservation, and a window that is not known
+    sides.robot = OscoreContext(pairing.teacher)
     with pytest.raises(oscore.ReplayErrorWithEcho):
-        ask(device, robot, "forward")
-    assert ask_until_fresh(device, robot, "left") == "left"
-    assert ask(device, robot, "right") == "right"
-    device.close()
-    robot.close()
+        ask(sides.device, sides.robot, "forward")
+    assert ask_until_fresh(sides.device, sides.robot, "left") == "left"
+    assert ask(sides.device, sides.robot, "right") == "right"
 
 
 def test_a_closed_context_sends_nothing_more(pairing: Pairing) -> None:

@@ -4,6 +4,7 @@ import re
 import secrets
 import stat
 from collections.abc import Callable
+from contextlib import closing
 from itertools import count
 from pathlib import Path
 
@@ -27,12 +28,8 @@ def devices(tmp_path: Path) -> Path:
 
 
 def understood(teacher: Path, device: Path) -> bool:
-    with_device, with_robot = OscoreContext(device), OscoreContext(teacher)
-    try:
+    with closing(OscoreContext(device)) as with_device, closing(OscoreContext(teacher)) as with_robot:
         return ask_until_fresh(with_device, with_robot, "forward") == "forward"
-    finally:
-        with_device.close()
-        with_robot.close()
 
 
 def test_pair_secrets_are_readable_by_owner_only(teachers: Path, devices: Path) -> None:

@@ -3,7 +3,6 @@
 import json
 import random
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -12,7 +11,7 @@ from aiocoap import oscore
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.pairing import Pairing
 from tests.channel.clock import Clock
-from tests.channel.sides import answer_challenge, ask, carried
+from tests.channel.sides import Sides, answer_challenge, ask, carried
 
 _MOST_PER_S = 200
 """A device says no more: the robot hears no more of one."""
@@ -76,17 +75,18 @@ def test_put_back_a_hundred_times_no_number_is_used_twice(pairing: Pairing, tmp_
 
 def test_a_clock_that_is_set_back_uses_no_number_twice(pairing: Pairing) -> None:
     first_s = _paired_s(pairing.device.folder) + 3600.0
-    used = []
+    used, clock = [], Clock()
     for now_s in (first_s, first_s - 86_400.0, 0.0, first_s + 1.0):
-        context = OscoreContext(pairing.device.folder, now=_at(now_s))
+        clock.now_s = now_s
+        context = OscoreContext(pairing.device.folder, now=clock)
         used += [context.new_sequence_number() for _ in range(5000)]
         context.abandon()
     assert used[0] == 3_600_000
     assert used == sorted(set(used))
 
 
-def test_restored_robot_executes_no_recorded_request(pairing: Pairing, tmp_path: Path) -> None:
-    device, robot = OscoreContext(pairing.device.folder), OscoreContext(pairing.teacher)
+def test_restored_robot_executes_no_recorded_request(sides: Sides, pairing: Pairing, tmp_path: Path) -> None:
+    device, robot = sides.device, sides.robot
     answer_challenge(device, robot)
     robot.close()
     shutil.copytree(pairing.teacher, tmp_path / "backup")
@@ -98,7 +98,7 @@ def test_restored_robot_executes_no_recorded_request(pairing: Pairing, tmp_path:
 
     shutil.rmtree(pairing.teacher)
     shutil.copytree(tmp_path / "backup", pairing.teacher)
-    robot = OscoreContext(pairing.teacher)
+    sides.robot = robot = OscoreContext(pairing.teacher)
     device.sender_sequence_number = number  # what was recorded is bit for bit what was sent
     with pytest.raises(oscore.ReplayErrorWithEcho) as challenge:
         ask(device, robot, "recorded")
@@ -106,9 +106,3 @@ def test_restored_robot_executes_no_recorded_request(pairing: Pairing, tmp_path:
     assert carried(challenge.value.to_message()).opt.oscore[0] & 0b111
     device.sender_sequence_number = number + 1
     answer_challenge(device, robot)
-    device.close()
-    robot.close()
-
-
-def _at(now_s: float) -> Callable[[], float]:
-    return lambda: now_s

@@ -66,11 +66,6 @@ def any_command(desk: ChannelFixture, kind: type[Single | CommandRequest], **hea
     return desk.command(kind, *(getattr(fields, name) for name in own), **head)
 
 
-@pytest.fixture
-def desk() -> ChannelFixture:
-    return ChannelFixture()
-
-
 # Streams.
 
 

@@ -1,8 +1,6 @@
 """The tag is checked before aiocoap decodes a datagram; no datagram that aiocoap would take is lost by it."""
 
 import random
-from collections.abc import Iterator
-from pathlib import Path
 
 import aiocoap
 import pytest
@@ -12,38 +10,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from kurt2rt.channel.security.oscore_context import OscoreContext
-from kurt2rt.channel.security.pairing import pair
 from kurt2rt.channel.server.datagram_filter import may_be_request
 from kurt2rt.channel.server.sealed_request import SealedRequest
 from tests.channel.hostile_datagrams import HostileDatagrams
+from tests.channel.sides import Sides
 
 _ALLOWED = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-
-
-class Sides:
-    """A device and its robot."""
-
-    def __init__(self, folder: Path) -> None:
-        pairing = pair(folder / "teachers", folder / "devices", "phone")
-        self.device, self.robot = OscoreContext(pairing.device.folder), OscoreContext(pairing.teacher)
-
-    def datagram(self, message: aiocoap.Message, token: bytes = b"12345678") -> bytes:
-        """Return a request of the device in its form on the wire."""
-        outer, _ = self.device.protect(message)
-        outer.mid, outer.mtype, outer.token = 7, aiocoap.NON, token
-        data: bytes = outer.encode()
-        return data
-
-    def close(self) -> None:
-        self.device.close()
-        self.robot.close()
-
-
-@pytest.fixture
-def sides(tmp_path: Path) -> Iterator[Sides]:
-    both = Sides(tmp_path)
-    yield both
-    both.close()
 
 
 def stop() -> aiocoap.Message:

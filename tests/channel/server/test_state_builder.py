@@ -15,11 +15,6 @@ from tests.channel.channel_fixture import STAMP, ChannelFixture
 from tests.service.health.reports import ILL
 
 
-@pytest.fixture
-def desk() -> ChannelFixture:
-    return ChannelFixture()
-
-
 def picture(desk: ChannelFixture) -> State:
     """Return the state of the newest tick, checked by a round trip."""
     told = desk.channel._states.build(desk.record)
