@@ -6,10 +6,12 @@ from typing import Any, cast
 from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings
 from hal.robot_settings import load_robot
+from kurt2rt.channel.protocol.codec import decode_state, encode_state
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.limits import FASTEST
 from kurt2rt.channel.protocol.requests import CommandRequest, Request, StopRequest, StreamRequest, tick_request
 from kurt2rt.channel.protocol.simulation import NO_EXAM, SimulationView, TaskName
+from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus, TeacherNow
 from kurt2rt.channel.server.reply import Reply
@@ -78,12 +80,11 @@ class Shelf:
         return await self._copy(None, "lessons.zip")
 
     async def examine(self) -> None:
-        await self.may_finish.wait()
-        if self.problem:
-            raise KnowledgeError(KnowledgeCode.NOT_DURABLE, reason=self.problem)
+        await self.settle()
         self.examined += 1
 
     async def settle(self) -> None:
+        await self.may_finish.wait()
         if self.problem:
             raise KnowledgeError(KnowledgeCode.NOT_DURABLE, reason=self.problem)
 
@@ -95,9 +96,7 @@ class Shelf:
 
     async def _copy(self, label: str | None, name: str) -> SavedCopy:
         self.labels.append(label)
-        await self.may_finish.wait()
-        if self.problem:
-            raise KnowledgeError(KnowledgeCode.NOT_DURABLE, reason=self.problem)
+        await self.settle()
         return SavedCopy(name, "ab" * 32, 4096)
 
 
@@ -179,6 +178,13 @@ class ChannelFixture:
     @property
     def unwritten(self) -> int:
         return len(self.notebook.events) - self.written
+
+    @property
+    def picture(self) -> State:
+        """Return the state of the newest tick, checked by a round trip."""
+        told = self.channel._states.build(self.record)
+        assert decode_state(encode_state(told)) == told
+        return told
 
     @property
     def tick(self) -> int:

@@ -2,9 +2,8 @@
 
 import pytest
 
-from kurt2rt.channel.protocol.codec import decode_state, encode_state
 from kurt2rt.channel.protocol.requests import SituationsRequest
-from kurt2rt.channel.protocol.state import State, SurpriseState
+from kurt2rt.channel.protocol.state import SurpriseState
 from kurt2rt.channel.server.reply import ReplyStatus
 from kurt2rt.core.decision.decision import GoalStatus, PlanStep
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
@@ -23,20 +22,8 @@ def desk() -> ChannelFixture:
     return ChannelFixture(behaviours=TURNS, mid="turns", ground=Yard())
 
 
-def picture(desk: ChannelFixture) -> State:
-    """Return the state of the newest tick, checked by a round trip."""
-    told = desk.channel._states.build(desk.record)
-    assert decode_state(encode_state(told)) == told
-    return told
-
-
-async def teach(desk: ChannelFixture, way: str, *, alternative: bool = False) -> Outcome | None:
-    """Give a lesson of the mid level; return what becomes of it."""
-    return outcome_of(await desk.ask(desk.command(Teach, way, None, MID, alternative)))
-
-
 async def test_situations_are_named_listed_sought_and_undone(desk: ChannelFixture) -> None:
-    await teach(desk, "turn_left")
+    await desk.ask(desk.command(Teach, "turn_left", None, MID, False))
     assert (await desk.ask(SituationsRequest())).body == {"situations": ()}
     reply = await desk.ask(desk.command(NameSituation, "door", None))
     assert outcome_of(reply) == Outcome.of(ResultCode.SITUATION_NAMED, name="door")
@@ -45,7 +32,7 @@ async def test_situations_are_named_listed_sought_and_undone(desk: ChannelFixtur
     assert (await desk.ask(desk.command(Seek, NamedGoal("door")))).status is ReplyStatus.DONE
     await desk.stream(desk.watch())
     desk.run()
-    told = picture(desk)
+    told = desk.picture
     assert (told.goal, told.plan) == ("door", ())
     assert "door" in told.plan_says
     step = PlanStep("door", GoalStatus.UNDER_WAY, ("turn_left", "straight_on"), 1, "on the way to door: 2 ways left", 0)
@@ -54,9 +41,9 @@ async def test_situations_are_named_listed_sought_and_undone(desk: ChannelFixtur
     assert (told.goal, told.plan, told.plan_says) == ("door", step.behaviours, step.says)
     assert outcome_of(await desk.ask(desk.command(StopSeeking))) == Outcome(ResultCode.GOAL_DROPPED)
     desk.run()
-    assert (picture(desk).goal, picture(desk).plan_says) == ("", "")
+    assert (desk.picture.goal, desk.picture.plan_says) == ("", "")
     assert (await desk.ask(desk.command(Seek, RlaGoal(1)))).status is ReplyStatus.DONE
-    assert "1" in picture(desk).goal
+    assert "1" in desk.picture.goal
     for request in (
         desk.command(Seek, NamedGoal("window")),
         desk.command(Seek, RlaGoal(77)),
@@ -70,10 +57,10 @@ async def test_situations_are_named_listed_sought_and_undone(desk: ChannelFixtur
 
 
 async def test_surprise_between_states_is_told(desk: ChannelFixture) -> None:
-    assert picture(desk).surprise is None
+    assert desk.picture.surprise is None
     usual = Surprise(MID, 1, 2, 1.0, 1.0, 9, 4, False)
     far = Surprise(MID, 1, 3, 6.0, 2.0, 9, 0, True)
     desk.channel._states.on_tick(desk.record._replace(surprise=far))
     desk.run(3)
     desk.channel._states.on_tick(desk.record._replace(surprise=usual))
-    assert picture(desk).surprise == SurpriseState(desk.tick - 3, MID, 1, 3, 3.0, True)
+    assert desk.picture.surprise == SurpriseState(desk.tick - 3, MID, 1, 3, 3.0, True)

@@ -66,6 +66,22 @@ def any_command(desk: ChannelFixture, kind: type[Single | CommandRequest], **hea
     return desk.command(kind, *(getattr(fields, name) for name in own), **head)
 
 
+@pytest.fixture
+def yard() -> Yard:
+    return Yard()
+
+
+@pytest.fixture
+def sim(yard: Yard) -> ChannelFixture:
+    """Return a desk whose robot is simulated."""
+    return ChannelFixture(ground=yard)
+
+
+def verdict(reply: Reply) -> tuple[object, Outcome | None]:
+    """Return the wire word of a refusal, and the outcome."""
+    return why(reply), outcome_of(reply)
+
+
 # Streams.
 
 
@@ -132,7 +148,7 @@ async def test_after_another_ones_stop_the_driver_has_to_say_resume(desk: Channe
     desk.run()
     await desk.ask(desk.stop(), "ben")
     refused = await desk.stream(desk.press(hold=2))
-    assert (why(refused), outcome_of(refused)) == ("stopped", Outcome.of(RefusalCode.STOPPED_BY, teachers=("ben",)))
+    assert verdict(refused) == ("stopped", Outcome.of(RefusalCode.STOPPED_BY, teachers=("ben",)))
     await desk.ask(desk.command(Resume))
     assert why(await desk.stream(desk.press(hold=2))) == ""
 
@@ -142,18 +158,16 @@ async def test_stream_of_another_device_is_held_with_teacher_name(desk: ChannelF
     desk.run()
     for request in (desk.press(), desk.watch()):
         refused = await desk.stream(request, "ben")
-        assert (why(refused), refused.status) == ("held", ReplyStatus.CONFLICT)
-        assert outcome_of(refused) == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="ann")
+        assert refused.status is ReplyStatus.CONFLICT
+        assert verdict(refused) == ("held", Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="ann"))
 
 
 async def test_inbox_full_refuses_new_commands_and_keeps_old(desk: ChannelFixture) -> None:
     waiting = 0
     while why(await desk.stream(desk.watch())) == "":
         waiting += 1
-    refused = await desk.stream(desk.press())
-    assert (why(refused), outcome_of(refused)) == ("refused", Outcome(RefusalCode.TOO_MANY))
-    refused = await reply_of(await desk.send(desk.answer()))
-    assert (why(refused), outcome_of(refused)) == ("refused", Outcome(RefusalCode.TOO_MANY))
+    for refused in (await desk.stream(desk.press()), await reply_of(await desk.send(desk.answer()))):
+        assert verdict(refused) == ("refused", Outcome(RefusalCode.TOO_MANY))
     assert len(desk.runtime.inbox.pop_all()) == waiting
     assert why(await desk.stream(desk.watch())) == ""
 
@@ -171,23 +185,22 @@ async def test_a_command_for_another_start_of_the_program_is_refused(
 
 
 @pytest.mark.parametrize("kind", sorted(COMMANDS, key=str))
-async def test_command_state_age_limit_depends_on_kind(kind: type[CommandRequest]) -> None:
-    desk = ChannelFixture(ground=Yard())
+async def test_command_state_age_limit_depends_on_kind(sim: ChannelFixture, kind: type[CommandRequest]) -> None:
     longest = MOVING_TICKS if kind in MOVING else COMMAND_TICKS
     for age in (longest + 1, -1):
-        assert why(await desk.ask(any_command(desk, kind, age=age))) == "stale"
-        assert desk.record.results == ()
-    assert why(await desk.ask(any_command(desk, kind, age=longest))) in ("", "refused", "held")
+        assert why(await sim.ask(any_command(sim, kind, age=age))) == "stale"
+        assert sim.record.results == ()
+    assert why(await sim.ask(any_command(sim, kind, age=longest))) in ("", "refused", "held")
 
 
 @pytest.mark.parametrize("kind", sorted(COMMANDS - {Take}, key=str))
-async def test_a_command_of_one_who_is_not_the_teacher_is_refused(kind: type[CommandRequest]) -> None:
-    desk = ChannelFixture(ground=Yard())
-    await desk.ask(desk.command(Take), "ann")
-    refused = await desk.ask(any_command(desk, kind), "ben")
-    assert why(refused) == "held"
-    assert outcome_of(refused) == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="ann")
-    assert desk.shelf.labels == []
+async def test_a_command_of_one_who_is_not_the_teacher_is_refused(
+    sim: ChannelFixture, kind: type[CommandRequest]
+) -> None:
+    await sim.ask(sim.command(Take), "ann")
+    refused = await sim.ask(any_command(sim, kind), "ben")
+    assert verdict(refused) == ("held", Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="ann"))
+    assert sim.shelf.labels == []
 
 
 async def test_a_lesson_is_answered_only_when_it_is_durable(desk: ChannelFixture) -> None:
@@ -263,7 +276,7 @@ async def test_take_is_refused_only_while_another_drives_by_hand(desk: ChannelFi
     await desk.stream(desk.press(), "ann")
     desk.run()
     refused = await desk.ask(desk.command(Take), "ben")
-    assert (why(refused), outcome_of(refused)) == ("refused", Outcome.of(RefusalCode.DRIVES_BY_HAND, teacher="ann"))
+    assert verdict(refused) == ("refused", Outcome.of(RefusalCode.DRIVES_BY_HAND, teacher="ann"))
     await desk.ask(desk.stop(), "ben")
     assert outcome_of(await desk.ask(desk.command(Take), "ben")) == Outcome.of(ResultCode.TAKEN, teacher="ben")
 
@@ -317,78 +330,78 @@ async def test_save_slow_copy_goes_on_and_answers_repetition() -> None:
 # Exams.
 
 
-async def test_an_exam_is_begun_by_the_teacher_alone_and_once() -> None:
-    desk = ChannelFixture(ground=Yard())
-    assert why(await desk.ask(desk.command(ExamRequest))) == "held"
-    await desk.ask(desk.command(Take), "bob")
-    assert why(await desk.ask(desk.command(ExamRequest))) == "held"
-    request = desk.command(ExamRequest)
-    first = await desk.ask(request, "bob")
-    assert (first.status, await desk.ask(request, "bob")) == (ReplyStatus.DONE, first)
-    assert desk.shelf.examined == 1
-    desk.shelf.problem = "the disk is full"
-    failed = await desk.ask(desk.command(ExamRequest), "bob")
+async def test_an_exam_is_begun_by_the_teacher_alone_and_once(sim: ChannelFixture) -> None:
+    assert why(await sim.ask(sim.command(ExamRequest))) == "held"
+    await sim.ask(sim.command(Take), "bob")
+    assert why(await sim.ask(sim.command(ExamRequest))) == "held"
+    request = sim.command(ExamRequest)
+    first = await sim.ask(request, "bob")
+    assert (first.status, await sim.ask(request, "bob")) == (ReplyStatus.DONE, first)
+    assert sim.shelf.examined == 1
+    sim.shelf.problem = "the disk is full"
+    failed = await sim.ask(sim.command(ExamRequest), "bob")
     assert outcome_of(failed) == not_durable(RefusalCode.EXAM_FAILED, "the disk is full")
-    desk.exam = ExamStatus(True, 0.25, "exam without teacher, world a")
-    assert why(await desk.ask(desk.command(ExamRequest), "bob")) == "refused"
-    told = (await desk.ask(ExamStatusRequest())).body["exam"]
-    assert EXAM.read(decode_answer(encode_answer(told))) == desk.exam
+    sim.exam = ExamStatus(True, 0.25, "exam without teacher, world a")
+    assert why(await sim.ask(sim.command(ExamRequest), "bob")) == "refused"
+    told = (await sim.ask(ExamStatusRequest())).body["exam"]
+    assert EXAM.read(decode_answer(encode_answer(told))) == sim.exam
 
 
 # The simulation.
 
 
-async def test_the_next_run_is_its_teachers_to_begin_and_ends_this_one(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_next_run_is_its_teachers_to_begin_and_ends_this_one(
+    sim: ChannelFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("kurt2rt.channel.server.off_tick_requests.LAST_ANSWER_S", 0.0)
-    desk = ChannelFixture(ground=Yard())
     ended: list[bool] = []
-    monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: ended.append(True))
-    assert why(await desk.ask(desk.command(NextRunRequest, "b", None, False))) == "held"
-    await desk.ask(desk.command(Take))
-    await desk.ask(desk.command(BeginSession, "noon"))
-    unknown = await desk.ask(desk.command(NextRunRequest, "nowhere", None, False))
+    monkeypatch.setattr(sim.runtime.scheduler, "end", lambda: ended.append(True))
+    assert why(await sim.ask(sim.command(NextRunRequest, "b", None, False))) == "held"
+    await sim.ask(sim.command(Take))
+    await sim.ask(sim.command(BeginSession, "noon"))
+    unknown = await sim.ask(sim.command(NextRunRequest, "nowhere", None, False))
     assert outcome_of(unknown) == Outcome.of(RefusalCode.NO_WORLD, world="nowhere", known=("a", "b"))
-    broken = await desk.ask(desk.command(NextRunRequest, "broken", None, False))
+    broken = await sim.ask(sim.command(NextRunRequest, "broken", None, False))
     assert outcome_of(broken) == Outcome.of(RefusalCode.NEXT_RUN_CRASHED, error="RuntimeError('no such thing')")
     assert not ended
-    request = desk.command(NextRunRequest, "b", "eight", True)
-    reply = await desk.ask(request)
-    assert (reply.status, await desk.ask(request)) == (ReplyStatus.DONE, reply)
+    request = sim.command(NextRunRequest, "b", "eight", True)
+    reply = await sim.ask(request)
+    assert (reply.status, await sim.ask(request)) == (ReplyStatus.DONE, reply)
     assert outcome_of(reply) == Outcome.of(ResultCode.NEXT_RUN, world="b", task="eight")
-    assert desk.simulation.prepared == [("b", "eight", True, TeacherNow("ann", 1, "noon"))]
+    assert sim.simulation.prepared == [("b", "eight", True, TeacherNow("ann", 1, "noon"))]
     assert ended == [True]
-    assert why(await desk.ask(desk.command(NextRunRequest, "c", None, False))) == "refused"
-    told = (await desk.ask(SimulationRequest())).body["simulation"]
-    assert SIMULATION.read(decode_answer(encode_answer(told))) == await desk.simulation.view()
+    assert why(await sim.ask(sim.command(NextRunRequest, "c", None, False))) == "refused"
+    told = (await sim.ask(SimulationRequest())).body["simulation"]
+    assert SIMULATION.read(decode_answer(encode_answer(told))) == await sim.simulation.view()
 
 
-async def test_no_next_run_begins_while_lessons_cannot_be_saved(monkeypatch: pytest.MonkeyPatch) -> None:
-    desk = ChannelFixture(ground=Yard())
-    monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: pytest.fail("lessons that wait end with their run"))
-    await desk.ask(desk.command(Take))
-    desk.shelf.problem = "var/a.knowledge: the disk is full"
-    reply = await desk.ask(desk.command(NextRunRequest, "b", None, False))
-    assert (why(reply), reply.body["text"]) == ("refused", desk.shelf.problem)
-    assert outcome_of(reply) == not_durable(RefusalCode.NEXT_RUN_FAILED, desk.shelf.problem)
-    assert not desk.simulation.prepared
+async def test_no_next_run_begins_while_lessons_cannot_be_saved(
+    sim: ChannelFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sim.runtime.scheduler, "end", lambda: pytest.fail("lessons that wait end with their run"))
+    await sim.ask(sim.command(Take))
+    sim.shelf.problem = "var/a.knowledge: the disk is full"
+    reply = await sim.ask(sim.command(NextRunRequest, "b", None, False))
+    assert (why(reply), reply.body["text"]) == ("refused", sim.shelf.problem)
+    assert outcome_of(reply) == not_durable(RefusalCode.NEXT_RUN_FAILED, sim.shelf.problem)
+    assert not sim.simulation.prepared
 
 
-async def test_speed_scales_leases_in_robot_time() -> None:
-    desk = ChannelFixture(ground=Yard())
-    assert why(await desk.ask(desk.command(SpeedRequest, 4))) == "held"
-    await desk.ask(desk.command(Take))
-    assert why(await desk.stream(desk.watch(age=STREAM_TICKS + 1))) == "stale"
-    assert (await desk.ask(desk.command(SpeedRequest, 4))).status is ReplyStatus.DONE
-    desk.run()
-    assert desk.speed.wanted == 4
-    assert why(await desk.stream(desk.watch(age=4 * STREAM_TICKS))) == ""
-    assert why(await desk.stream(desk.watch(age=4 * STREAM_TICKS + 1))) == "stale"
-    await desk.stream(desk.watch())
-    desk.run(4 * 24)
-    assert desk.runtime.handler.authority.is_present(desk.tick)
-    desk.run(1)
-    assert not desk.runtime.handler.authority.is_present(desk.tick)
-    told = SIMULATION.read((await desk.ask(SimulationRequest())).body["simulation"])
+async def test_speed_scales_leases_in_robot_time(sim: ChannelFixture) -> None:
+    assert why(await sim.ask(sim.command(SpeedRequest, 4))) == "held"
+    await sim.ask(sim.command(Take))
+    assert why(await sim.stream(sim.watch(age=STREAM_TICKS + 1))) == "stale"
+    assert (await sim.ask(sim.command(SpeedRequest, 4))).status is ReplyStatus.DONE
+    sim.run()
+    assert sim.speed.wanted == 4
+    assert why(await sim.stream(sim.watch(age=4 * STREAM_TICKS))) == ""
+    assert why(await sim.stream(sim.watch(age=4 * STREAM_TICKS + 1))) == "stale"
+    await sim.stream(sim.watch())
+    sim.run(4 * 24)
+    assert sim.runtime.handler.authority.is_present(sim.tick)
+    sim.run(1)
+    assert not sim.runtime.handler.authority.is_present(sim.tick)
+    told = SIMULATION.read((await sim.ask(SimulationRequest())).body["simulation"])
     assert (told.speed, told.reached) == (4, 1.0)
 
 
@@ -397,46 +410,43 @@ async def test_speed_scales_leases_in_robot_time() -> None:
     [(2.5, ActiveStop(StopReason.FALLS_BEHIND, "4"), 1), (4.0, ActiveStop(StopReason.LINK_LOST, "ann"), 4)],
 )
 async def test_computer_too_slow_for_the_speed_is_no_lost_link(
-    monkeypatch: pytest.MonkeyPatch, reached: float, stop: ActiveStop, times: int
+    sim: ChannelFixture, monkeypatch: pytest.MonkeyPatch, reached: float, stop: ActiveStop, times: int
 ) -> None:
-    desk = ChannelFixture(ground=Yard())
     monkeypatch.setattr(SimulatedClock, "reached", reached)
-    await desk.ask(desk.command(Take))
-    assert (await desk.ask(desk.command(SpeedRequest, 4))).status is ReplyStatus.DONE
-    desk.runtime.inbox.put(Teach("t", "ann", "forward"))
-    await desk.stream(desk.watch())
-    desk.run(4 * 24)
-    assert desk.record.decision.driving
-    desk.run(2)
-    assert desk.record.standing.stop == stop
-    assert (desk.speed.wanted, desk.runtime.handler.authority.speed) == (times, times)
+    await sim.ask(sim.command(Take))
+    assert (await sim.ask(sim.command(SpeedRequest, 4))).status is ReplyStatus.DONE
+    sim.runtime.inbox.put(Teach("t", "ann", "forward"))
+    await sim.stream(sim.watch())
+    sim.run(4 * 24)
+    assert sim.record.decision.driving
+    sim.run(2)
+    assert sim.record.standing.stop == stop
+    assert (sim.speed.wanted, sim.runtime.handler.authority.speed) == (times, times)
 
 
-async def test_put_back_is_refused_after_stop_like_place() -> None:
-    yard = Yard()
-    desk = ChannelFixture(ground=yard)
-    await desk.ask(desk.command(Take))
-    assert (await desk.ask(desk.command(BackToStartRequest))).status is ReplyStatus.DONE
-    request = desk.command(BackToStartRequest)
-    await desk.ask(desk.stop())
-    assert why(await desk.ask(request)) == "refused"
+async def test_put_back_is_refused_after_stop_like_place(sim: ChannelFixture, yard: Yard) -> None:
+    await sim.ask(sim.command(Take))
+    assert (await sim.ask(sim.command(BackToStartRequest))).status is ReplyStatus.DONE
+    request = sim.command(BackToStartRequest)
+    await sim.ask(sim.stop())
+    assert why(await sim.ask(request)) == "refused"
     assert yard.changes == [("start",)]
 
 
-async def test_upload_in_parts_is_loaded_once(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_upload_in_parts_is_loaded_once(sim: ChannelFixture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("kurt2rt.channel.server.off_tick_requests.LAST_ANSWER_S", 0.0)
-    desk, content, upload = ChannelFixture(ground=Yard()), b"PK" + bytes(1000), b"12345678"
-    monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: None)
+    content, upload = b"PK" + bytes(1000), b"12345678"
+    monkeypatch.setattr(sim.runtime.scheduler, "end", lambda: None)
     parts = [UploadRequest(BOOT, upload, at, content[at : at + 896]) for at in (0, 896)]
-    assert why(await desk.ask(parts[0])) == "held"
-    await desk.ask(desk.command(Take))
-    assert why(await desk.ask(parts[1])) == "refused"
-    assert [(await desk.ask(each)).body["size"] for each in (parts[0], parts[0], parts[1])] == [896, 896, 1002]
-    assert why(await desk.ask(UploadRequest(LAST_START, upload, 0, b"PK"))) == "boot"
+    assert why(await sim.ask(parts[0])) == "held"
+    await sim.ask(sim.command(Take))
+    assert why(await sim.ask(parts[1])) == "refused"
+    assert [(await sim.ask(each)).body["size"] for each in (parts[0], parts[0], parts[1])] == [896, 896, 1002]
+    assert why(await sim.ask(UploadRequest(LAST_START, upload, 0, b"PK"))) == "boot"
     fingerprint = hashlib.sha256(content).digest()
-    assert why(await desk.ask(desk.command(LoadRequest, upload, bytes(32)))) == "refused"
-    assert (await desk.ask(desk.command(LoadRequest, upload, fingerprint))).status is ReplyStatus.DONE
-    assert desk.simulation.prepared == [(content, TeacherNow("ann", 1, None))]
+    assert why(await sim.ask(sim.command(LoadRequest, upload, bytes(32)))) == "refused"
+    assert (await sim.ask(sim.command(LoadRequest, upload, fingerprint))).status is ReplyStatus.DONE
+    assert sim.simulation.prepared == [(content, TeacherNow("ann", 1, None))]
 
 
 async def test_a_real_robot_has_no_next_run(desk: ChannelFixture) -> None:
@@ -470,10 +480,8 @@ async def test_why_is_limited_to_ten_a_second(desk: ChannelFixture) -> None:
     assert answered == 10
 
 
-async def test_a_simulated_world_is_told_and_changed() -> None:
-    yard = Yard()
-    desk = ChannelFixture(ground=yard)
-    world = (await desk.ask(WorldRequest())).body
+async def test_a_simulated_world_is_told_and_changed(sim: ChannelFixture, yard: Yard) -> None:
+    world = (await sim.ask(WorldRequest())).body
     assert decode_answer(encode_answer(world)) == {
         "version": 0,
         "name": "yard",
@@ -482,31 +490,24 @@ async def test_a_simulated_world_is_told_and_changed() -> None:
         "walls": [["box", [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]]]],
         "round": [["post", 3.0, 3.0, 0.1]],
     }
-    move = desk.command(MoveWallRequest, "box", 0.5, -0.25)
-    reply = await desk.ask(move)
+    move = sim.command(MoveWallRequest, "box", 0.5, -0.25)
+    reply = await sim.ask(move)
     assert (reply.status, outcome_of(reply)) == (ReplyStatus.DONE, Outcome.of(ResultCode.WALL_MOVED, name="box"))
-    assert await desk.ask(move) == reply  # sent again: it moves once
-    assert outcome_of(await desk.ask(desk.command(PlaceRequest, 1.0, 2.0, 0.5))) == Outcome(ResultCode.ROBOT_PLACED)
+    assert await sim.ask(move) == reply  # sent again: it moves once
+    assert outcome_of(await sim.ask(sim.command(PlaceRequest, 1.0, 2.0, 0.5))) == Outcome(ResultCode.ROBOT_PLACED)
     assert yard.changes == [("box", 0.5, -0.25), (1.0, 2.0, 0.5)]
 
 
-async def test_impossible_change_of_the_world_is_refused_with_code() -> None:
-    desk = ChannelFixture(ground=Yard(start_blocked=True))
+async def test_impossible_change_of_the_world_is_refused_with_code(sim: ChannelFixture, yard: Yard) -> None:
+    yard.start_blocked = True
     no_wall = Outcome.of(RefusalCode.NO_WALL, world="yard", name="tree", known=("box", "post"))
     for request, outcome in (
-        (desk.command(MoveWallRequest, "tree", 0.5, 0.0), no_wall),
-        (desk.command(MoveWallRequest, "post", 0.5, 0.0), Outcome.of(RefusalCode.WALL_ON_ROBOT, name="post")),
-        (desk.command(PlaceRequest, 50.0, 0.0, 0.0), Outcome(RefusalCode.NO_ROOM)),
-        (desk.command(BackToStartRequest), Outcome(RefusalCode.START_BLOCKED)),
+        (sim.command(MoveWallRequest, "tree", 0.5, 0.0), no_wall),
+        (sim.command(MoveWallRequest, "post", 0.5, 0.0), Outcome.of(RefusalCode.WALL_ON_ROBOT, name="post")),
+        (sim.command(PlaceRequest, 50.0, 0.0, 0.0), Outcome(RefusalCode.NO_ROOM)),
+        (sim.command(BackToStartRequest), Outcome(RefusalCode.START_BLOCKED)),
     ):
-        refused = await desk.ask(request)
-        assert (why(refused), outcome_of(refused)) == ("refused", outcome)
-
-
-# The critic.
-
-
-# Several taught behaviours.
+        assert verdict(await sim.ask(request)) == ("refused", outcome)
 
 
 async def test_lesson_that_contradicts_its_neighbours_is_named(desk: ChannelFixture) -> None:
@@ -525,9 +526,3 @@ async def test_lesson_that_contradicts_its_neighbours_is_named(desk: ChannelFixt
     assert not any(each.against for each in others)
     await desk.ask(desk.command(Undo, lesson.command_id))
     assert not any(each[-1] for each in (await desk.ask(LessonsRequest(20))).body["lessons"])
-
-
-async def test_press_on_old_state_is_accepted_but_does_not_drive(desk: ChannelFixture) -> None:
-    """Accepted up to 40 ticks, good for 35: what comes between counts as an answered message and no more."""
-    assert why(await desk.stream(desk.press(age=STREAM_TICKS))) == ""
-    assert desk.run().decision.cause is not DecisionCause.TEACHER

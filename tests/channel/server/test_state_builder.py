@@ -4,9 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from kurt2rt.channel.protocol.codec import decode_state, encode_state
 from kurt2rt.channel.protocol.health import Trouble
-from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.core.decision.standing import ActiveStop, StopReason
 from kurt2rt.core.rla.rla import ASK, Phase
@@ -15,28 +13,21 @@ from tests.channel.channel_fixture import STAMP, ChannelFixture
 from tests.service.health.reports import ILL
 
 
-def picture(desk: ChannelFixture) -> State:
-    """Return the state of the newest tick, checked by a round trip."""
-    told = desk.channel._states.build(desk.record)
-    assert decode_state(encode_state(told)) == told
-    return told
-
-
 def test_urgent_trouble_of_health_is_state_trouble(desk: ChannelFixture) -> None:
     full = Trouble(TroubleCode.LITTLE_ROOM, 3.0, True, "knowledge", (20.0,))
     desk.health = replace(ILL, troubles=(*ILL.troubles, full))
-    assert picture(desk).trouble == f"{full.what}; {full.to_do}"
+    assert desk.picture.trouble == f"{full.what}; {full.to_do}"
     desk.bus_trouble = "the cable is out"
-    assert picture(desk).trouble == "the cable is out"
+    assert desk.picture.trouble == "the cable is out"
     desk.bus_trouble, desk.health = "", ILL  # in which only the sensors are urgent: the cause says so
-    assert picture(desk).trouble == ""
+    assert desk.picture.trouble == ""
 
 
 async def test_a_robot_that_drives_by_what_it_was_taught(desk: ChannelFixture) -> None:
     await desk.ask(desk.answer("forward"))
     await desk.stream(desk.watch())
     desk.run()
-    told = picture(desk)
+    told = desk.picture
     assert (told.cause, told.action, told.rla) == ("rla", "forward", 1)
     assert (told.left_m_s, told.right_m_s) == (0.3, 0.3)
     learning = desk.runtime.task.learning  # in phase 1 the robot asks sooner
@@ -51,17 +42,17 @@ async def test_phase_session_and_clock(desk: ChannelFixture) -> None:
     await desk.ask(desk.command(SetPhase, Phase.CORRECTIONS))
     await desk.ask(desk.command(BeginSession, "morning"))
     desk.run(250)
-    told = picture(desk)
+    told = desk.picture
     assert (told.phase, told.session) == (2, "morning")
     assert told.clock_s == pytest.approx(2.5)
     await desk.ask(desk.command(EndSession))
     desk.run(100)
-    told = picture(desk)
+    told = desk.picture
     assert told.session is None
     assert told.clock_s == pytest.approx(2.51)
     assert told.stopped == ActiveStop(StopReason.SESSION_OVER, "morning")
     await desk.ask(desk.command(Resume))
-    assert picture(desk).stopped is None
+    assert desk.picture.stopped is None
 
 
 async def drives(desk: ChannelFixture) -> None:
@@ -69,18 +60,18 @@ async def drives(desk: ChannelFixture) -> None:
     await desk.ask(desk.answer("forward"))
     await desk.stream(desk.watch())
     desk.run()
-    assert picture(desk).cause == "rla"
+    assert desk.picture.cause == "rla"
 
 
 async def test_worth_of_an_rla_whose_action_was_withdrawn_is_told(desk: ChannelFixture) -> None:
     await drives(desk)
-    assert picture(desk).nearest_value is None
-    while picture(desk).nearest_action != ASK:
+    assert desk.picture.nearest_value is None
+    while desk.picture.nearest_action != ASK:
         await desk.stream(desk.watch())
         desk.run()
         await desk.ask(desk.command(Reward, -1, None))
         desk.run()
-    told = picture(desk)
+    told = desk.picture
     assert told.cause == "unknown"
     assert told.nearest_value is not None
     assert told.nearest_value < 0

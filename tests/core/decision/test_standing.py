@@ -6,7 +6,6 @@ import pytest
 
 from hal.guard_reason import Effect, GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
-from kurt2rt.channel.protocol.codec import decode_state, encode_state
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.decision import BY_KNOWLEDGE, Decision, DecisionCause, StandReason
 from kurt2rt.core.decision.standing import (
@@ -60,10 +59,6 @@ class LatchingDesk(ChannelFixture):
     def stall(self, ticks: int) -> None:
         self._tick += ticks
         self.run()
-
-    @property
-    def picture(self) -> State:
-        return decode_state(encode_state(self.channel._states.build(self.record)))
 
 
 def page_of(picture: State) -> str:
