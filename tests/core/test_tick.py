@@ -149,16 +149,6 @@ def corridor() -> Corridor:
     return Corridor()
 
 
-@pytest.fixture
-def driving() -> Corridor:
-    """Return a robot that drives forward, as it was taught at counts of 100."""
-    corridor = Corridor()
-    corridor.run(100, teach("forward", "first"))
-    for _ in range(10):
-        assert corridor.run().decision.action == "forward"
-    return corridor
-
-
 def test_untaught_it_asks_and_stands_with_its_history_frozen(corridor: Corridor) -> None:
     records = [corridor.run(counts) for counts in (100, 150, 200)]
     for record in records:

@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import pytest
-
 from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.decision.decision import DecisionCause, StandReason
 from kurt2rt.core.decision.standing import ASKS_AFTER_TICKS, Standing
@@ -19,33 +17,19 @@ from tests.runs.replay.stories import NAME, Scene, record_story
 from tests.teacher.helpers import teach
 
 
-def held(corridor: Corridor, ticks: int = ASKS_AFTER_TICKS) -> TickRecord:
-    """Drive by the first RLA into an obstacle; return the record of the last of `ticks` at its bumper."""
-    corridor.run(100, teach("forward", "first"))
-    for _ in range(10):
-        assert corridor.run().decision.action == "forward"
-    corridor.robot.touches_in_front = True
-    for _ in range(ticks):
-        record = corridor.run()
-    return record
-
-
-@pytest.fixture
-def corridor() -> Corridor:
-    return Corridor()
-
-
-def test_bumper_blocked_robot_asks_after_half_a_second(corridor: Corridor) -> None:
-    before = held(corridor, ASKS_AFTER_TICKS - 1)
+def test_bumper_blocked_robot_asks_after_half_a_second(driving: Corridor) -> None:
+    driving.robot.touches_in_front = True
+    for _ in range(ASKS_AFTER_TICKS - 1):
+        before = driving.run()
     assert (before.decision.cause, before.standing) == (DecisionCause.RLA, Standing(StandReason.FRONT_BUMPER))
-    record = corridor.run()
+    record = driving.run()
     decision = record.decision
     assert (decision.cause, decision.asking, decision.driving) == (DecisionCause.TOUCHES, True, False)
     assert (decision.wheel_speeds, record.guard_result.wheel_speeds) == (STANDSTILL, STANDSTILL)
     assert record.standing == Standing(StandReason.FRONT_BUMPER, asks=True)
     assert decision.match is not None
     assert decision.match.rla.rla_id == 1  # who goes on toward it
-    assert all(corridor.run().decision.cause is DecisionCause.TOUCHES for _ in range(100))
+    assert all(driving.run().decision.cause is DecisionCause.TOUCHES for _ in range(100))
 
 
 def test_a_robot_that_is_held_and_loses_its_teacher_waits_for_go() -> None:

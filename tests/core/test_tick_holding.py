@@ -1,5 +1,7 @@
 """Held actions in the tick: they drive while they are held, and teach what the robot would not have done."""
 
+from collections.abc import Callable
+
 import pytest
 
 from hal.robot import STANDSTILL
@@ -7,9 +9,10 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated
-from kurt2rt.core.teaching.commands import Correct, Drive, HoldAction, Stop, Teach, Undo, Watch
+from kurt2rt.core.teaching.commands import Correct, Drive, HoldAction, Stop, Stream, Teach, Undo, Watch
 from kurt2rt.core.tick_record import TickRecord
 from tests.core.test_tick import Corridor
+from tests.core.test_tick_by_hand import press
 from tests.teacher.helpers import resume, teach
 
 LEASE = 24
@@ -46,16 +49,6 @@ def events(corridor: Corridor) -> list[tuple[str, int]]:
 
 def actions(corridor: Corridor) -> dict[int, str]:
     return {rla.rla_id: rla.action for rla in corridor.system.rlas}
-
-
-@pytest.fixture
-def driving() -> Corridor:
-    """Return a robot that has driven forward for two seconds at 100 counts."""
-    corridor = Corridor()
-    corridor.run(100, teach("forward", "first"))
-    for _ in range(200):
-        assert corridor.run(100).decision.action == "forward"
-    return corridor
 
 
 def test_held_action_drives_and_release_hands_back_to_rlas(driving: Corridor) -> None:
@@ -126,14 +119,20 @@ def test_hold_of_an_unknown_action_is_refused(driving: Corridor) -> None:
     assert driving.run(100).decision.cause is DecisionCause.RLA
 
 
+@pytest.mark.parametrize("message", [hold, press])
 @pytest.mark.parametrize(("error", "cause"), [("disk full", DecisionCause.UNSAVED), (None, DecisionCause.BLIND)])
-def test_hold_neither_drives_nor_teaches_blind_or_unsaved(
-    driving: Corridor, error: str | None, cause: DecisionCause
+def test_hand_neither_drives_nor_teaches_blind_or_unsaved(
+    driving: Corridor, message: Callable[[Corridor], Stream], error: str | None, cause: DecisionCause
 ) -> None:
     driving.notebook.saving_error = error
     driving.robot.infrared_age_s = 0.0 if error else 1.0
-    for record in held(driving, 30, 140):
-        assert (record.decision.cause, record.guard_result.wheel_speeds) == (cause, STANDSTILL)
+    for _ in range(30):
+        record = driving.run(140, message(driving))
+        assert (record.decision.cause, record.decision.action, record.decision.wheel_speeds) == (
+            cause,
+            None,
+            STANDSTILL,
+        )
     assert events(driving) == []
 
 

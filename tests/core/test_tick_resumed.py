@@ -7,14 +7,7 @@ from kurt2rt.core.decision.decision import StandReason
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.outcome_text import text_of
 from tests.core.test_tick import Corridor
-from tests.teacher.helpers import resume, stop, teach
-
-
-@pytest.fixture
-def driving() -> Corridor:
-    corridor = Corridor()
-    corridor.run(100, teach("forward"))
-    return corridor
+from tests.teacher.helpers import resume, stop
 
 
 @pytest.mark.parametrize(

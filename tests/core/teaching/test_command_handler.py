@@ -85,54 +85,52 @@ class Lesson:
         return {rla.rla_id: rla.action for rla in self.small.level.system.rlas}
 
 
-def test_correction_up_to_the_border_replaces_the_action() -> None:
-    lesson = Lesson(created(1, (0.0,), "a"))
-    result = lesson.say(correct("b", "c-1"), place=BORDER)
+@pytest.fixture
+def lesson() -> Lesson:
+    return Lesson()
+
+
+@pytest.fixture
+def taught() -> Lesson:
+    """Return a lesson in which the robot knows one RLA, with action a."""
+    return Lesson(created(1, (0.0,), "a"))
+
+
+def test_correction_up_to_the_border_replaces_the_action(taught: Lesson) -> None:
+    result = taught.say(correct("b", "c-1"), place=BORDER)
     assert result.outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="b", was="a")
-    assert lesson.events[-1] == ActionReplaced(1, "b", "a", Origin("c-1", "Ann", Phase.SUPERVISED, 101))
-    assert lesson.actions == {1: "b"}
+    assert taught.events[-1] == ActionReplaced(1, "b", "a", Origin("c-1", "Ann", Phase.SUPERVISED, 101))
+    assert taught.actions == {1: "b"}
 
 
-def test_a_correction_beyond_the_border_inserts_a_new_rla() -> None:
-    lesson = Lesson(created(1, (0.0,), "a"))
-    result = lesson.say(correct("b"), place=math.nextafter(BORDER, 100))
+def test_a_correction_beyond_the_border_inserts_a_new_rla(taught: Lesson) -> None:
+    result = taught.say(correct("b"), place=math.nextafter(BORDER, 100))
     assert result.outcome == Outcome.of(ResultCode.RLA_TAUGHT, rla=2, action="b")
-    assert lesson.actions == {1: "a", 2: "b"}
+    assert taught.actions == {1: "a", 2: "b"}
 
 
 @pytest.mark.parametrize(
     "command", [teach("fly"), correct("fly"), replace_action(1, "fly"), RunBehaviour("1", "Ann", "fly", 9)]
 )
-def test_unknown_action_is_refused_with_the_known_ones(command: Command) -> None:
-    lesson = Lesson(created(1, (0.0,), "a"))
-    result = lesson.say(command, place=100.0)
+def test_unknown_action_is_refused_with_the_known_ones(taught: Lesson, command: Command) -> None:
+    result = taught.say(command, place=100.0)
     assert result.outcome == Outcome.of(RefusalCode.NO_ACTION, action="fly", known=("a", "b", "c"))
-    assert lesson.actions == {1: "a"}
-    assert len(lesson.events) == 1
-    assert lesson.school.corrections_at[BASIC] == 0
+    assert taught.actions == {1: "a"}
+    assert len(taught.events) == 1
+    assert taught.school.corrections_at[BASIC] == 0
 
 
 @pytest.mark.parametrize(
     "command",
     [teach("b", "x"), correct("b", "x"), replace_action(1, "b", "x"), delete(1, "x"), set_phase(Phase.CRITIC, "x")],
 )
-def test_a_command_that_comes_twice_counts_once(command: Command) -> None:
-    lesson = Lesson(created(1, (0.0,), "a"))
-    assert lesson.say(command, place=100.0).accepted
-    known, corrections = lesson.actions, lesson.school.corrections_at[BASIC]
-    events = list(lesson.events)
+def test_a_command_that_comes_twice_counts_once(taught: Lesson, command: Command) -> None:
+    assert taught.say(command, place=100.0).accepted
+    known, corrections = taught.actions, taught.school.corrections_at[BASIC]
+    events = list(taught.events)
     for place in (100.0, 200.0):
-        assert lesson.say(command, place) == CommandResult("x", Outcome(ResultCode.REPEATED))
-    assert (lesson.actions, lesson.events, lesson.school.corrections_at[BASIC]) == (known, events, corrections)
-
-
-def test_stop_always_stops_and_late_copy_of_resume_does_not_act() -> None:
-    lesson = Lesson()
-    for command, stopped in ((stop("1"), True), (resume("2"), False), (stop("1"), True)):
-        lesson.say(command)
-        assert bool(lesson.school.stops.active) == stopped
-    lesson.say(resume("2"))
-    assert lesson.school.stops.active
+        assert taught.say(command, place) == CommandResult("x", Outcome(ResultCode.REPEATED))
+    assert (taught.actions, taught.events, taught.school.corrections_at[BASIC]) == (known, events, corrections)
 
 
 def test_a_command_of_an_earlier_run_counts_once_as_well() -> None:
@@ -152,35 +150,31 @@ def test_a_correction_means_the_situation_of_the_tick_it_names() -> None:
     assert lesson.events[-1].origin.tick == lesson.tick  # of the tick that took it
 
 
-def test_stored_answer_does_not_change_later() -> None:
-    lesson = Lesson()
+def test_stored_answer_does_not_change_later(lesson: Lesson) -> None:
     asked = lesson.go_on(2.5)
     lesson.say(Teach("t-1", "Ann", "a", asked), place=80.0)
     lesson.go_on(90.0, 1000)  # the place of that tick in memory is used again
     assert [rla.condition for rla in lesson.small.level.system.rlas] == [(2.5,)]
 
 
-def test_lesson_about_a_blind_tick_is_refused() -> None:
-    lesson = Lesson(created(1, (0.0,), "a"))
-    dark = lesson.go_on(33.0, blind=True)
-    lesson.go_on(0.0)
+def test_lesson_about_a_blind_tick_is_refused(taught: Lesson) -> None:
+    dark = taught.go_on(33.0, blind=True)
+    taught.go_on(0.0)
     for command in (Teach("x", "Ann", "b", dark), Correct("x", "Ann", "b", dark)):
-        result = lesson.say(command)
-        assert (result.outcome, lesson.actions) == (Outcome(RefusalCode.WAS_BLIND), {1: "a"})
+        result = taught.say(command)
+        assert (result.outcome, taught.actions) == (Outcome(RefusalCode.WAS_BLIND), {1: "a"})
 
 
-def test_reward_without_a_driving_rla_is_refused() -> None:
-    lesson = Lesson(created(1, (0.0,), "a"))
-    assert not lesson.say(Reward("r-0", "Ann", 1)).accepted  # before the first decision
-    asked = lesson.go_on(50.0)
-    assert lesson.say(Reward("r-1", "Ann", 1, asked)).outcome == Outcome(RefusalCode.NO_RLA_DROVE)
-    drove = lesson.go_on(0.0)
-    lesson.say(delete(1))
-    assert lesson.say(Reward("r-2", "Ann", -1, drove)).outcome == Outcome.of(RefusalCode.NO_RLA, rla=1)
+def test_reward_without_a_driving_rla_is_refused(taught: Lesson) -> None:
+    assert not taught.say(Reward("r-0", "Ann", 1)).accepted  # before the first decision
+    asked = taught.go_on(50.0)
+    assert taught.say(Reward("r-1", "Ann", 1, asked)).outcome == Outcome(RefusalCode.NO_RLA_DROVE)
+    drove = taught.go_on(0.0)
+    taught.say(delete(1))
+    assert taught.say(Reward("r-2", "Ann", -1, drove)).outcome == Outcome.of(RefusalCode.NO_RLA, rla=1)
 
 
-def test_undo_without_name_undoes_newest_first() -> None:
-    lesson = Lesson()
+def test_undo_without_name_undoes_newest_first(lesson: Lesson) -> None:
     lesson.say(teach("a", "1"), place=0.0)
     lesson.say(correct("b", "2"), place=0.0)
     assert lesson.say(Undo("u-1", "Ann")).lesson
@@ -193,8 +187,7 @@ def test_undo_without_name_undoes_newest_first() -> None:
     assert result.outcome == Outcome(RefusalCode.NO_LESSON)
 
 
-def test_impossible_undo_is_refused_unchanged() -> None:
-    lesson = Lesson()
+def test_impossible_undo_is_refused_unchanged(lesson: Lesson) -> None:
     lesson.say(teach("a", "1"), place=0.0)
     lesson.say(correct("b", "2"), place=0.0)
     refused = lesson.say(Undo("u-1", "Ann", "1"))
@@ -205,8 +198,7 @@ def test_impossible_undo_is_refused_unchanged() -> None:
     assert not lesson.school.was_handled("u-1")
 
 
-def test_session_begins_and_ends_once_and_its_clock_runs() -> None:
-    lesson = Lesson()
+def test_session_begins_and_ends_once_and_its_clock_runs(lesson: Lesson) -> None:
     school = lesson.school
     assert lesson.say(EndSession("e-0", "Ann")).outcome == Outcome(RefusalCode.NO_SESSION)
     assert school.clock.ticks(lesson.tick) == 0
@@ -232,8 +224,7 @@ def test_session_begins_and_ends_once_and_its_clock_runs() -> None:
     assert school.clock.ticks(lesson.tick) == 0
 
 
-def test_everybody_may_stop_and_nobody_becomes_the_teacher_by_it() -> None:
-    lesson = Lesson()
+def test_everybody_may_stop_and_nobody_becomes_the_teacher_by_it(lesson: Lesson) -> None:
     assert lesson.say(Stop("1", "Ben")).accepted
     assert lesson.school.authority.refusal_for("Dora") is None
     lesson.say(teach("a", "2"))
@@ -244,16 +235,14 @@ def test_everybody_may_stop_and_nobody_becomes_the_teacher_by_it() -> None:
     )
 
 
-def test_a_stop_ends_the_press_and_his_own_next_one_drives_again() -> None:
-    lesson = Lesson()
+def test_a_stop_ends_the_press_and_his_own_next_one_drives_again(lesson: Lesson) -> None:
     assert lesson.drive(hold=1) is None
     lesson.say(stop())
     assert lesson.drive(hold=1) == Outcome(RefusalCode.PRESS_OVER)
     assert lesson.drive(hold=2) is None
 
 
-def test_after_another_ones_stop_a_new_press_waits_for_resume() -> None:
-    lesson = Lesson()
+def test_after_another_ones_stop_a_new_press_waits_for_resume(lesson: Lesson) -> None:
     assert lesson.drive(hold=1) is None
     lesson.say(Stop("1", "Ben"))
     assert lesson.drive(hold=2) == Outcome.of(RefusalCode.STOPPED_BY, teachers=("Ben",))
@@ -265,9 +254,8 @@ def test_after_another_ones_stop_a_new_press_waits_for_resume() -> None:
 
 
 @pytest.mark.parametrize("own", [Stop("2", "Ann"), EndSession("2", "Ann")])
-def test_an_own_stop_does_not_lift_that_of_another(own: Command) -> None:
+def test_an_own_stop_does_not_lift_that_of_another(lesson: Lesson, own: Command) -> None:
     """A copy of it may come late; the other one must not have stopped the robot for nothing."""
-    lesson = Lesson()
     lesson.say(BeginSession("0", "Ann", "morning"))
     lesson.say(Stop("1", "Ben"))
     assert lesson.say(own).accepted
@@ -276,8 +264,7 @@ def test_an_own_stop_does_not_lift_that_of_another(own: Command) -> None:
     assert lesson.drive() is None
 
 
-def test_take_over_clears_the_last_teachers_stop_only() -> None:
-    lesson = Lesson()
+def test_take_over_clears_the_last_teachers_stop_only(lesson: Lesson) -> None:
     lesson.drive(hold=1)
     lesson.say(stop("1"))
     lesson.say(Take("2", "Ben"))
@@ -288,8 +275,7 @@ def test_take_over_clears_the_last_teachers_stop_only() -> None:
     assert lesson.drive(hold=9) == Outcome.of(RefusalCode.STOPPED_BY, teachers=("Cleo",))
 
 
-def test_a_release_that_comes_late_ends_its_own_press_only() -> None:
-    lesson = Lesson()
+def test_a_release_that_comes_late_ends_its_own_press_only(lesson: Lesson) -> None:
     lesson.drive(hold=1)
     release = Stop("1", "Ann", press_id=1)
     lesson.drive(hold=2)
@@ -312,8 +298,7 @@ def test_a_release_that_comes_late_ends_its_own_press_only() -> None:
         lambda tick: Pursue("2", "Ann", "", tick),
     ],
 )
-def test_command_from_before_a_stop_does_not_move_the_robot(late: Callable[[int], Command]) -> None:
-    lesson = Lesson()
+def test_command_from_before_a_stop_does_not_move_the_robot(lesson: Lesson, late: Callable[[int], Command]) -> None:
     lesson.say(stop("1"))
     refused = lesson.say(late(lesson.tick - 1))
     assert refused.outcome == Outcome(RefusalCode.STOPPED_SINCE)
@@ -354,17 +339,15 @@ def test_pursue_needs_authority_and_keeps_a_stop() -> None:
         HandOver("x", "Ann", "critic"),
     ],
 )
-def test_nobody_teaches_in_the_critics_name(command: Command) -> None:
-    lesson = Lesson(created(1, (0.0,), "a"))
-    lesson.go_on(0.0)
-    result = lesson.say(command)
+def test_nobody_teaches_in_the_critics_name(taught: Lesson, command: Command) -> None:
+    taught.go_on(0.0)
+    result = taught.say(command)
     assert not result.accepted
     assert result.outcome == Outcome.of(RefusalCode.CRITICS_NAME, name="critic")
-    assert lesson.school.authority.teacher != "critic"
+    assert taught.school.authority.teacher != "critic"
 
 
-def test_critics_name_may_stop_and_nothing_else() -> None:
-    lesson = Lesson()
+def test_critics_name_may_stop_and_nothing_else(lesson: Lesson) -> None:
     assert lesson.drive("critic") == Outcome.of(RefusalCode.CRITICS_NAME, name="critic")
     assert lesson.say(Stop("s", "critic")).accepted
 
@@ -383,30 +366,23 @@ def test_own_change_that_does_not_fit_is_skipped_and_reported() -> None:
     assert robot.go(0.0).action == "a"
 
 
-def test_late_copy_of_stop_brakes_without_being_newer() -> None:
-    lesson = Lesson()
-    lesson.say(stop("1"))
-    seen = lesson.tick
-    lesson.say(stop("1"))
-    assert lesson.say(Resume("2", "Ann", seen)).accepted
-    assert not lesson.school.stops.active
-
-
-def test_copy_of_a_stop_that_ends_a_drive_counts_as_stop() -> None:
-    lesson = Lesson()
-    lesson.say(stop("1"))
-    lesson.say(resume("2"))
-    seen = lesson.tick
-    lesson.say(stop("1"))
+@pytest.mark.parametrize(
+    ("seen", "unseen", "lifted"),
+    [
+        ([stop("1")], [stop("1")], True),
+        ([stop("1"), resume("2")], [stop("1")], False),  # it ended a drive
+        ([stop("1")], [Stop("2", "Ben"), stop("1")], False),
+        ([stop("1"), Stop("2", "Ben")], [stop("1")], True),
+    ],
+)
+def test_copy_of_a_stop_brakes_and_is_newer_after_a_resume_only(
+    lesson: Lesson, seen: list[Command], unseen: list[Command], lifted: bool
+) -> None:
+    for command in seen:
+        lesson.say(command)
+    seen_tick = lesson.tick
+    for command in unseen:
+        lesson.say(command)
     assert lesson.school.stops.active
-    assert not lesson.say(Resume("3", "Ann", seen)).accepted
-
-
-def test_another_stop_is_newer_than_the_copies_of_the_first() -> None:
-    lesson = Lesson()
-    lesson.say(stop("1"))
-    seen = lesson.tick
-    lesson.say(Stop("2", "Ben"))
-    lesson.say(stop("1"))
-    assert not lesson.say(Resume("3", "Ann", seen)).accepted
-    assert lesson.say(Resume("4", "Ann", seen + 1)).accepted
+    assert lesson.say(Resume("3", "Ann", seen_tick)).accepted is lifted
+    assert bool(lesson.school.stops.active) is not lifted

@@ -17,7 +17,7 @@ from tests.core.rla.helpers import created
 from tests.core.teaching.test_command_handler import Lesson
 from tests.core.test_tick import Corridor
 from tests.core.test_tick_holding import condition
-from tests.teacher.helpers import correct, resume, stop, teach
+from tests.teacher.helpers import correct, resume, stop
 
 
 def asked_and_answered(delay: TeacherDelay, *took: int, teacher: str = "Ann", speed: int = 1) -> None:
@@ -56,14 +56,12 @@ DELAY = round(DEFAULT_TICKS * CORRECTION_PART)
 
 
 @pytest.fixture
-def driving() -> Corridor:
-    """Return a robot that drove forward for a second at 100 counts, for 0.5 s at 130 and 0.5 s at 132."""
-    corridor = Corridor()
-    corridor.run(100, teach("forward", "first"))
-    for counts, ticks in ((100, 100), (130, DELAY - DELAY // 2 + 1), (132, DELAY // 2)):
+def driving(driving: Corridor) -> Corridor:
+    """Return a robot that drove forward for two seconds at 100 counts, for 0.5 s at 130 and 0.5 s at 132."""
+    for counts, ticks in ((130, DELAY - DELAY // 2 + 1), (132, DELAY // 2)):
         for _ in range(ticks):
-            assert corridor.run(counts).decision.action == "forward"
-    return corridor
+            assert driving.run(counts).decision.action == "forward"
+    return driving
 
 
 def press(corridor: Corridor, action: str = "back", *, name: str = "late", age: int = 0) -> Correct:
