@@ -314,3 +314,14 @@ def test_three_random_teachers_keep_rules_of_manual_drive(
             carried_out = result is not None and result.accepted and result.code is not ResultCode.REPEATED
             witness.note(command, record.tick, carried_out=carried_out)
         witness.check(record, corridor)
+
+
+@pytest.mark.parametrize(("trouble", "cause"), [("disk full", DecisionCause.UNSAVED), (None, DecisionCause.BLIND)])
+def test_manual_drive_is_blocked_if_blind_or_unsaved(
+    driving: Corridor, trouble: str | None, cause: DecisionCause
+) -> None:
+    assert not stands(driving.run(100, press(driving)))
+    driving.notebook.saving_error = trouble
+    driving.robot.infrared_age_s = 0.0 if trouble else 1.0
+    record = driving.run(100, press(driving))
+    assert (record.decision.cause, record.decision.action, record.decision.wheel_speeds) == (cause, None, STANDSTILL)

@@ -1,7 +1,5 @@
 """Held actions in the tick: they drive while they are held, and teach what the robot would not have done."""
 
-from collections.abc import Callable
-
 import pytest
 
 from hal.robot import STANDSTILL
@@ -9,10 +7,9 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated
-from kurt2rt.core.teaching.commands import Correct, Drive, HoldAction, Stop, Stream, Teach, Undo, Watch
+from kurt2rt.core.teaching.commands import Correct, Drive, HoldAction, Stop, Teach, Undo, Watch
 from kurt2rt.core.tick_record import TickRecord
 from tests.core.test_tick import Corridor
-from tests.core.test_tick_by_hand import press
 from tests.teacher.helpers import resume, teach
 
 LEASE = 24
@@ -119,20 +116,14 @@ def test_hold_of_an_unknown_action_is_refused(driving: Corridor) -> None:
     assert driving.run(100).decision.cause is DecisionCause.RLA
 
 
-@pytest.mark.parametrize("message", [hold, press])
 @pytest.mark.parametrize(("error", "cause"), [("disk full", DecisionCause.UNSAVED), (None, DecisionCause.BLIND)])
-def test_hand_neither_drives_nor_teaches_blind_or_unsaved(
-    driving: Corridor, message: Callable[[Corridor], Stream], error: str | None, cause: DecisionCause
+def test_hold_neither_drives_nor_teaches_blind_or_unsaved(
+    driving: Corridor, error: str | None, cause: DecisionCause
 ) -> None:
     driving.notebook.saving_error = error
     driving.robot.infrared_age_s = 0.0 if error else 1.0
-    for _ in range(30):
-        record = driving.run(140, message(driving))
-        assert (record.decision.cause, record.decision.action, record.decision.wheel_speeds) == (
-            cause,
-            None,
-            STANDSTILL,
-        )
+    for record in held(driving, 30, 140):
+        assert (record.decision.cause, record.guard_result.wheel_speeds) == (cause, STANDSTILL)
     assert events(driving) == []
 
 
