@@ -181,7 +181,7 @@ class Device:
         async with asyncio.timeout(_PATIENCE_S):
             echo: bytes | None = None
             while True:
-                self._send(NON, POST, path, body, queue, echo=echo)
+                self._send(path, body, queue, echo=echo)
                 try:
                     answer = await asyncio.wait_for(queue.get(), _AGAIN_S)
                 except TimeoutError:
@@ -204,18 +204,10 @@ class Device:
     def _aad(self, number: bytes) -> bytes:
         return cbor2.dumps(["Encrypt0", b"", cbor2.dumps([1, [10], self.id, number, b""])])
 
-    def _send(
-        self,
-        kind: int,
-        code: int,
-        path: str,
-        body: list[Any] | None,
-        queue: asyncio.Queue[Answer],
-        *,
-        echo: bytes | None = None,
-    ) -> bytes:
-        """Send a request; its token."""
-        observes = code == GET
+    def _send(self, path: str, body: list[Any] | None, queue: asyncio.Queue[Answer], *, echo: bytes | None) -> bytes:
+        """Send a request, which observes if it has no body; its token."""
+        observes = body is None
+        kind, code = (CON, GET) if observes else (NON, POST)
         number, token = self.numbers.take(), secrets.token_bytes(4)
         inner = [(URI_PATH, part.encode()) for part in path.strip("/").split("/")]
         outer = [(OSCORE, bytes((0x08 | len(number),)) + number + self.id)]
@@ -289,7 +281,7 @@ class Looking:
         self._queue = asyncio.Queue()
         self._newest = -1
         self.begun += 1
-        self._token = self._device._send(CON, GET, "/state", None, self._queue, echo=echo)
+        self._token = self._device._send("/state", None, self._queue, echo=echo)
 
     async def picture(self) -> dict[str, Any]:
         """Return the next state."""

@@ -4,7 +4,7 @@ import asyncio
 import random
 import socket
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from types import TracebackType
 from typing import Self
 
@@ -32,21 +32,14 @@ class Weather:
 
 
 @dataclass(slots=True)
-class Tally:
-    """Datagrams of one direction."""
+class Way:
+    """One direction."""
 
-    came: int = 0
+    weather: Weather
+    """Weather for what comes from now on; a test may change it."""
+    chance: random.Random
     lost: int = 0
     """Datagrams lost by the weather, or while the link was cut."""
-    delivered: int = 0
-    """Doubled ones count twice."""
-
-
-@dataclass(slots=True)
-class _Way:
-    weather: Weather
-    chance: random.Random
-    tally: Tally = field(default_factory=Tally)
 
 
 class LossyLink:
@@ -61,8 +54,8 @@ class LossyLink:
     ) -> None:
         """`up` is the weather on the way to the robot on 127.0.0.1:`robot_port`, `down` that on the way back."""
         self._robot = ("127.0.0.1", robot_port)
-        self._up = _Way(up or Weather(), random.Random(f"{seed} up"))
-        self._down = _Way(down or Weather(), random.Random(f"{seed} down"))
+        self.up = Way(up or Weather(), random.Random(f"{seed} up"))
+        self.down = Way(down or Weather(), random.Random(f"{seed} down"))
         self._cut = False
         self._front: socket.socket | None = None
         self._behind: dict[tuple[str, int], socket.socket] = {}
@@ -94,21 +87,6 @@ class LossyLink:
         port: int = self._front.getsockname()[1]
         return port
 
-    @property
-    def up(self) -> Tally:
-        """Tally of the datagrams to the robot."""
-        return self._up.tally
-
-    @property
-    def down(self) -> Tally:
-        """Tally of the datagrams from the robot."""
-        return self._down.tally
-
-    def change_weather(self, *, up: Weather | None = None, down: Weather | None = None) -> None:
-        """Other weather for what comes from now on; None leaves a direction as it is."""
-        self._up.weather = up or self._up.weather
-        self._down.weather = down or self._down.weather
-
     def cut(self) -> None:
         """Drop all datagrams, also those under way, without an error to the sender."""
         self._cut = True
@@ -118,7 +96,7 @@ class LossyLink:
         self._cut = False
 
     async def until(self, holds: Callable[[], bool]) -> None:
-        """Wait until something holds that changes with the traffic, such as a tally."""
+        """Wait until something holds that changes with the traffic."""
         async with asyncio.timeout(PATIENCE_S):
             while not holds():
                 self._news.clear()
@@ -134,7 +112,7 @@ class LossyLink:
             behind.connect(self._robot)
             self._behind[client] = behind
             asyncio.get_running_loop().add_reader(behind, self._from_robot, behind, client)
-        self._pass_on(self._up, behind, datagram, None)
+        self._pass_on(self.up, behind, datagram, None)
 
     def _from_robot(self, behind: socket.socket, client: tuple[str, int]) -> None:
         assert self._front is not None
@@ -142,17 +120,16 @@ class LossyLink:
             datagram = behind.recv(_LARGEST_DATAGRAM)
         except ConnectionRefusedError:
             return  # no robot there: over a radio the sender gets no error either
-        self._pass_on(self._down, self._front, datagram, client)
+        self._pass_on(self.down, self._front, datagram, client)
 
-    def _pass_on(self, way: _Way, out: socket.socket, datagram: bytes, to: tuple[str, int] | None) -> None:
+    def _pass_on(self, way: Way, out: socket.socket, datagram: bytes, to: tuple[str, int] | None) -> None:
         weather, chance = way.weather, way.chance
-        way.tally.came += 1
         # All is drawn for each datagram, whatever its fate: one that is lost does not change those of the next ones.
         lost, doubled, overtaken, held_back = (chance.random() for _ in range(4))
         delays = [weather.delay_s + weather.jitter_s * chance.random() for _ in range(2)]
         self._news.set()
         if self._cut or lost < weather.loss:
-            way.tally.lost += 1
+            way.lost += 1
             return
         if held_back < weather.held_back:
             delays[0] += weather.held_back_s
@@ -165,7 +142,7 @@ class LossyLink:
                 self._deliver(way, out, datagram, to)
 
     def _deliver_later(
-        self, delay_s: float, way: _Way, out: socket.socket, datagram: bytes, to: tuple[str, int] | None
+        self, delay_s: float, way: Way, out: socket.socket, datagram: bytes, to: tuple[str, int] | None
     ) -> None:
         def deliver() -> None:
             self._late.discard(handle)
@@ -174,10 +151,10 @@ class LossyLink:
         handle = asyncio.get_running_loop().call_later(delay_s, deliver)
         self._late.add(handle)
 
-    def _deliver(self, way: _Way, out: socket.socket, datagram: bytes, to: tuple[str, int] | None) -> None:
+    def _deliver(self, way: Way, out: socket.socket, datagram: bytes, to: tuple[str, int] | None) -> None:
         self._news.set()
         if self._cut:
-            way.tally.lost += 1
+            way.lost += 1
             return
         try:
             if to is None:
@@ -185,6 +162,4 @@ class LossyLink:
             else:
                 out.sendto(datagram, to)
         except (BlockingIOError, ConnectionRefusedError):
-            way.tally.lost += 1  # a full buffer, or a closed port: lost like any other
-        else:
-            way.tally.delivered += 1
+            way.lost += 1  # a full buffer, or a closed port: lost like any other

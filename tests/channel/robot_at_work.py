@@ -1,5 +1,6 @@
 """The real service with its channel on loopback, over a robot that only notes what it is told."""
 
+import asyncio
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
@@ -123,12 +124,7 @@ async def robot_at_work(folder: Path) -> AsyncIterator[RobotAtWork]:
     mine, other = (local_pairing(folder / "teachers", folder / "devices", name) for name in (LOCAL, AUTO))
     robot = CheapRobot()
     records: list[TickRecord] = []
-    opened: dict[str, Channel] = {}
-    is_open = anyio.Event()
-
-    def listening(channel: Channel) -> None:
-        opened["channel"] = channel
-        is_open.set()
+    opened: asyncio.Future[Channel] = asyncio.get_running_loop().create_future()
 
     async def serve_it() -> None:
         as_robot: Robot = robot
@@ -136,14 +132,13 @@ async def robot_at_work(folder: Path) -> AsyncIterator[RobotAtWork]:
             as_robot,
             RunSettings(SETTINGS, load_task("wall_following"), service),
             ProgramConsole(status=_nothing, question=_nothing, acknowledged=_nothing),
-            ServeOptions(on_tick=records.append, channel=ChannelOptions(on_open=listening)),
+            ServeOptions(on_tick=records.append, channel=ChannelOptions(on_open=opened.set_result)),
         )
         at_work.ended = True
 
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(serve_it)
-        await is_open.wait()
-        at_work = RobotAtWork(robot, mine, other, opened["channel"], Path(service.knowledge), records)
+        at_work = RobotAtWork(robot, mine, other, await opened, Path(service.knowledge), records)
         try:
             yield at_work
         finally:

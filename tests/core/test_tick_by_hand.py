@@ -255,6 +255,12 @@ class Witness:
         if carried_out or isinstance(command, Drive | HoldAction):
             self.teachers.add(command.teacher)
 
+    def hears(self, driver: str | None, tick: int) -> bool:
+        """Return whether a message of a press still lets its teacher drive."""
+        return any(
+            who == driver and tick - arrived < LEASE and tick - seen < REACH for who, arrived, seen in self.messages
+        )
+
     def check(self, record: TickRecord, corridor: Corridor) -> None:
         """Assert the rules after a tick."""
         school, decision = corridor.school, record.decision
@@ -264,20 +270,14 @@ class Witness:
             self.lost = True
         hand = teacher if decision.action == "by hand" else None
         if hand is not None:
-            assert any(
-                who == hand and record.tick - arrived < LEASE and record.tick - seen < REACH
-                for who, arrived, seen in self.messages
-            )
+            assert self.hears(hand, record.tick)
             press = (hand, decision.wheel_speeds.left_m_s)
             assert press not in self.drove or self.hand == hand
             self.drove.add(press)
         if moves and decision.cause is DecisionCause.TEACHER and school.authority.held_press is not None:
             assert school.stops.active is None
             assert not self.stops
-            assert any(
-                who == teacher and record.tick - arrived < LEASE and record.tick - seen < REACH
-                for who, arrived, seen in self.messages
-            )
+            assert self.hears(teacher, record.tick)
         if moves:
             assert not alone
             assert self.stops <= {teacher}

@@ -225,7 +225,7 @@ class Story:
 
     async def _dies_while_all_he_says_is_held_back(self) -> None:
         await self._press_until_it_drives()
-        self._link.change_weather(up=Weather(held_back=1.0, held_back_s=5.0))
+        self._link.up.weather = Weather(held_back=1.0, held_back_s=5.0)
         tick = self._at_work.tick
         sent = max(self._teacher.sent_ticks)
         held = len(self._teacher.notes)

@@ -229,7 +229,7 @@ async def test_while_answers_are_lost_the_same_command_is_sent_again(pairing: Pa
         anyio.create_task_group() as tasks,
     ):
         await first_state(client)
-        link.change_weather(down=Weather(loss=1.0))
+        link.down.weather = Weather(loss=1.0)
         answers: list[Answer] = []
 
         async def teach() -> None:
@@ -238,7 +238,7 @@ async def test_while_answers_are_lost_the_same_command_is_sent_again(pairing: Pa
         tasks.start_soon(teach)
         await robot.hears(Teach, 3, copies=True)
         assert answers == []
-        link.change_weather(down=Weather())
+        link.down.weather = Weather()
         await eventually(lambda: bool(answers))
         assert answers[0].accepted
         copies = robot.all_of(Teach, copies=True)
