@@ -7,7 +7,7 @@ import signal
 from collections import Counter
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -88,26 +88,18 @@ class NotingTeacher(TeacherClient):
         self._open.requests._robot = None
 
 
-@dataclass
-class Told:
-    """Results of one story."""
-
-    link: BadLink
-    notes: list[Note] = field(default_factory=list)
-    stops: int = 0
-    """False ones."""
-
-
 class Story:
     """A teacher who teaches and drives over one bad link."""
 
-    def __init__(self, at_work: RobotAtWork, link: LossyLink, teacher: NotingTeacher, told: Told) -> None:
+    def __init__(self, at_work: RobotAtWork, link: LossyLink, teacher: NotingTeacher, bad: BadLink) -> None:
+        self.notes = teacher.notes
+        self.false_stops = 0
         self._at_work = at_work
         self._link = link
         self._teacher = teacher
-        self._told = told
+        self._bad = bad
         self._now = asyncio.get_running_loop().time
-        self._chance = random.Random(told.link.seed)
+        self._chance = random.Random(bad.seed)
 
     async def tell(self, length: Length) -> None:
         await self._begin()
@@ -119,7 +111,7 @@ class Story:
         # It still thinks that the button is down when it goes on; the robot knows that this press is over.
         await self._freezes_after(self._press_until_it_drives)
         await self._freezes_after(self._until_rlas_drive)
-        if self._told.link.holds_back:
+        if self._bad.holds_back:
             await self._dies_while_all_he_says_is_held_back()
         else:
             await self._dies()
@@ -165,7 +157,7 @@ class Story:
     @asynccontextmanager
     async def _a_hole_in_the_middle(self, lasts_s: float) -> AsyncIterator[None]:
         async with anyio.create_task_group() as tasks:
-            if self._told.link.hole:
+            if self._bad.hole:
                 tasks.start_soon(self._hole, lasts_s / 2)
             yield
 
@@ -184,7 +176,7 @@ class Story:
         await self._press_until_it_drives()
         first = self._at_work.tick
         await self._keep_pressing(lasts_s)
-        self._told.stops += self._stops_since(first, (DecisionCause.TEACHER,))
+        self.false_stops += self._stops_since(first, (DecisionCause.TEACHER,))
         with anyio.move_on_after(_LONGEST_S):
             await self._insist(self._teacher.stop)
 
@@ -195,7 +187,7 @@ class Story:
             if self._at_work.records[-1].decision.cause is DecisionCause.STOPPED:
                 await self._until_rlas_drive()
             await anyio.sleep(_BEAT_S)
-        self._told.stops += self._stops_since(first, (DecisionCause.RLA, DecisionCause.HELD))
+        self.false_stops += self._stops_since(first, (DecisionCause.RLA, DecisionCause.HELD))
 
     def _stops_since(self, first: int, driving: tuple[DecisionCause, ...]) -> int:
         causes = [record.decision.cause in driving for record in self._at_work.records if record.tick >= first]
@@ -209,7 +201,7 @@ class Story:
             await self._must_stand(_HOLE_S)
         await self._mend()
         # What was held back before the cut comes now.
-        await self._must_not_move(_HELD_S if self._told.link.holds_back else 1.0)
+        await self._must_not_move(_HELD_S if self._bad.holds_back else 1.0)
 
     async def _freezes_after(self, begin: Callable[[], Awaitable[None]]) -> None:
         await begin()
@@ -269,12 +261,12 @@ class Story:
 
     def _must_have_stood(self, sent: int) -> None:
         moved = self._at_work.moved_since(sent)
-        assert max(moved, default=0) < sent + REACH_TICKS, f"{self._told.link.name}: sent in {sent}, moved in {moved}"
+        assert max(moved, default=0) < sent + REACH_TICKS, f"{self._bad.name}: sent in {sent}, moved in {moved}"
 
     async def _must_not_move(self, lasts_s: float) -> None:
         tick = self._at_work.tick
         await anyio.sleep(lasts_s)
-        assert self._at_work.moved_since(tick) == [], self._told.link.name
+        assert self._at_work.moved_since(tick) == [], self._bad.name
 
 
 def _command(request: Request) -> Command | None:
@@ -286,25 +278,23 @@ def _identity(request: Request) -> str:
     return f"local-{request.command_id.hex()}"
 
 
-def _tell(link: BadLink, folder: Path, length: Length) -> Told:
-    told = Told(link)
-
-    async def story() -> None:
+def _tell(link: BadLink, folder: Path, length: Length) -> Story:
+    async def tell() -> Story:
         async with (
             robot_at_work(folder) as at_work,
             LossyLink(at_work.port, up=link.weather, down=link.weather, seed=link.seed) as lossy,
             NotingTeacher(at_work, lossy) as teacher,
         ):
             teacher.note_what_is_sent()
-            told.notes = teacher.notes
-            await Story(at_work, lossy, teacher, told).tell(length)
+            story = Story(at_work, lossy, teacher, link)
+            await story.tell(length)
             assert at_work.channel.failures == 0
             assert at_work.channel.endpoint.counters.failed == 0, at_work.channel.endpoint.newest_failure
             assert at_work.runtime.timer.missed_ticks == 0
+            return story
 
     random.seed(link.seed)  # aiocoap draws message ids and pauses
-    run_jumping(story)
-    return told
+    return run_jumping(tell)
 
 
 def _must_agree(notes: list[Note], events: list[TeachingEvent]) -> None:
@@ -336,12 +326,12 @@ def _must_agree(notes: list[Note], events: list[TeachingEvent]) -> None:
     ],
 )
 def test_bad_link_lessons_count_once_and_silence_stops(link: BadLink, length: Length, tmp_path: Path) -> None:
-    told = _tell(link, tmp_path, length)
-    _must_agree(told.notes, journal_of(tmp_path))
+    story = _tell(link, tmp_path, length)
+    _must_agree(story.notes, journal_of(tmp_path))
     if link.weather.loss <= 0.3:
-        assert told.stops <= (0 if link.missing <= 0.3 else 1), told.stops
+        assert story.false_stops <= (0 if link.missing <= 0.3 else 1)
     if link.weather.loss <= 0.1:
-        assert all(note.answer is not None for note in told.notes if isinstance(_command(note.request), Reward))
+        assert all(note.answer is not None for note in story.notes if isinstance(_command(note.request), Reward))
 
 
 @asynccontextmanager

@@ -25,7 +25,6 @@ from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.security.pairing import local_pairing, pair
 from kurt2rt.channel.server.channel import open_channel
-from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus
 from kurt2rt.channel.server.resources import RobotSite
 from kurt2rt.core.decision.decision import DecisionCause
 from tests.channel.channel_fixture import ChannelFixture, turns
@@ -67,7 +66,6 @@ class School:
     """A robot at its desk, with two paired devices, ann and ben."""
 
     def __init__(self, folder: Path) -> None:
-        self.folder = folder
         self.pairings = {name: pair(folder / "teachers", folder / "devices", name) for name in ("ann", "ben")}
         self.teachers = Teachers(folder / "teachers")
         self.desk = ChannelFixture(keys=self.teachers)
@@ -231,14 +229,14 @@ class Observer:
         protected, self._request_id = phone.keys.protect(message)
         self.events: list[Any] = []
         pipe = Pipe(carried(protected), logging.getLogger("aiocoap.test"))
-        pipe.on_event(lambda event: _noting(self.events)(event))
+        pipe.on_event(_noting(self.events))
         self._task = asyncio.create_task(phone.site.render_to_pipe(pipe))
 
     async def ticks(self) -> list[int]:
         """Ticks of the pictures that came since the last call."""
         await turns()
-        events, self.events = self.events, []
-        answers = [self.keys.unprotect(carried(event.message), self._request_id)[0] for event in events]
+        answers = [self.keys.unprotect(carried(event.message), self._request_id)[0] for event in self.events]
+        self.events.clear()
         return [decode_state(answer.payload).tick for answer in answers]
 
     async def removed(self) -> None:
@@ -311,12 +309,10 @@ async def test_observer_silent_for_a_second_gets_confirmable_state(
 # Over a real socket.
 
 
-async def test_channel_without_paired_device_listens_on_loopback(tmp_path: Path) -> None:
+async def test_channel_without_paired_device_listens_on_loopback(desk: ChannelFixture, tmp_path: Path) -> None:
     local_pairing(tmp_path / "teachers", tmp_path / "devices")
     teachers = Teachers(tmp_path / "teachers")
-    desk = ChannelFixture()
-    journal = JournalStatus(lambda: 0, lambda: None, lambda _: "")
-    async with open_channel(desk.runtime, teachers, 0, ChannelDependencies(journal, desk.shelf, str, None)) as channel:
+    async with open_channel(desk.runtime, teachers, 0, desk.parts) as channel:
         (tokens,) = channel.endpoint._context.request_interfaces
         transport = tokens.token_interface.message_interface.transport
         assert transport.get_extra_info("socket").getsockname()[0] == "::ffff:127.0.0.1"
