@@ -10,17 +10,21 @@ from typing import Any, TypeVar, cast
 import anyio
 
 from kurt2rt.channel.protocol.codec import encode_state
-from kurt2rt.channel.protocol.requests import CommandRequest, Request, StreamRequest, TickRequest
+from kurt2rt.channel.protocol.hello import HELLO, AppraisalName, MidIntroduction
+from kurt2rt.channel.protocol.requests import CommandRequest, HelloRequest, Request, StreamRequest, TickRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.server.endpoint import open_endpoint
-from kurt2rt.channel.server.reply import Reply, done, refusal
+from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender
 from kurt2rt.channel.server.resources import RobotSite
 from kurt2rt.core.decision.standing import Standing
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.teaching.commands import Command, StreamCommand
+from kurt2rt.teacher import TeacherClient
 from tests.channel.states import ASKING, standing_in
+from tests.teacher.page.fake_robot import A_HELLO
+from tests.teacher.states_of import state_where
 
 Message = Request | Command
 """Request, or the command in it: what a test of a device looks for."""
@@ -31,12 +35,31 @@ _TICKS = 5
 _LONGEST_S = 60.0
 """Ends a test whose request never comes; none waits for it."""
 
+CRITICS = tuple(AppraisalName(name, value) for name, value in (("bad", -1), ("neutral", 0), ("good", 1)))
+MIDS: dict[str, Any] = {"behaviours": ("straight_on", "turn_left"), "mid": MidIntroduction("history", 12, 6.0)}
+A_PUPIL = replace(A_HELLO, what="Teach it to follow a wall", appraisals=CRITICS, trusted_from=0.8, seeks=True, **MIDS)
+INTRODUCED = Reply(ReplyStatus.DONE, HELLO.plain_of(A_PUPIL))
+
 _Kind = TypeVar("_Kind", bound=Message)
 _Thing = TypeVar("_Thing")
 
 
-async def agrees(_: object) -> Reply:
-    return done(7)
+async def agrees(request: object) -> Reply:
+    return INTRODUCED if isinstance(request, HelloRequest) else done(7)
+
+
+class SlowMind:
+    """Answers as another mind does, but messages of the types `slow` only once it `may_answer`."""
+
+    def __init__(self, *slow: type[Message], mind: Mind = agrees) -> None:
+        self.slow = slow
+        self.mind = mind
+        self.may_answer = anyio.Event()
+
+    async def __call__(self, request: Message) -> Reply:
+        if isinstance(request, self.slow):
+            await self.may_answer.wait()
+        return await self.mind(request)
 
 
 class StandInRobot:
@@ -126,6 +149,12 @@ async def stand_in_robot(
             await endpoint.close()
         for name in teachers.names:
             teachers._held[name].context.abandon()
+
+
+async def looks_at(client: TeacherClient, robot: StandInRobot, **changes: Any) -> State:
+    """Show one more picture, and no other from then on; return it when the client has it."""
+    robot.showing = False
+    return await state_where(client, tick=robot.show(**changes).tick)
 
 
 @asynccontextmanager

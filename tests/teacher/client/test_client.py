@@ -11,12 +11,10 @@ from typing import Any, cast
 import anyio
 import pytest
 
-from kurt2rt.channel.protocol.hello import HELLO, AppraisalName, MidIntroduction
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.limits import VERSION
 from kurt2rt.channel.protocol.requests import (
     CommandRequest,
-    HelloRequest,
     LessonsRequest,
     PlaceRequest,
     SaveRequest,
@@ -46,8 +44,15 @@ from kurt2rt.core.teaching.commands import (
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError, local_refusal
 from tests.channel.lossy_link import LossyLink, Weather
-from tests.teacher.page.fake_robot import A_HELLO
-from tests.teacher.stand_in_robot import StandInRobot, agrees, in_a_task_of_its_own, stand_in_robot
+from tests.teacher.stand_in_robot import (
+    SlowMind,
+    StandInRobot,
+    agrees,
+    in_a_task_of_its_own,
+    looks_at,
+    stand_in_robot,
+)
+from tests.teacher.states_of import state_where
 
 
 def open_exchanges(client: TeacherClient) -> int:
@@ -55,10 +60,6 @@ def open_exchanges(client: TeacherClient) -> int:
     return len(client._open.requests._coap.request_interfaces[0].outgoing_requests)
 
 
-CRITICS = tuple(AppraisalName(name, value) for name, value in (("bad", -1), ("neutral", 0), ("good", 1)))
-MIDS: dict[str, Any] = {"behaviours": ("straight_on", "turn_left"), "mid": MidIntroduction("history", 12, 6.0)}
-A_PUPIL = replace(A_HELLO, what="Teach it to follow a wall", appraisals=CRITICS, trusted_from=0.8, seeks=True, **MIDS)
-INTRODUCED = Reply(ReplyStatus.DONE, HELLO.plain_of(A_PUPIL))
 HELD = Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
 
 
@@ -91,23 +92,30 @@ async def robot(pairing: Pairing) -> AsyncIterator[StandInRobot]:
 
 
 @pytest.fixture
-async def client(pairing: Pairing, robot: StandInRobot) -> AsyncIterator[TeacherClient]:
-    opened = TeacherClient(pairing.device.folder, port=robot.port, patience_s=LONGEST_S, now=Clock())
+async def link(robot: StandInRobot) -> AsyncIterator[LossyLink]:
+    """Return the link between `robot` and `client`; it loses nothing until the test says so."""
+    async with LossyLink(robot.port) as link:
+        yield link
+
+
+@pytest.fixture
+def clock() -> Clock:
+    """Return the clock of `client`."""
+    return Clock()
+
+
+@pytest.fixture
+async def client(pairing: Pairing, link: LossyLink, clock: Clock) -> AsyncIterator[TeacherClient]:
+    opened = TeacherClient(pairing.device.folder, port=link.port, patience_s=LONGEST_S, now=clock)
     async with in_a_task_of_its_own(opened) as client:
-        await first_state(client)
+        await state_where(client)
         yield client
 
 
-async def first_state(client: TeacherClient) -> None:
-    await seen(client, lambda: True)
-
-
-async def seen(client: TeacherClient, holds: Callable[[], bool]) -> None:
-    """Wait for a picture with which something holds."""
-    with anyio.fail_after(LONGEST_S):
-        async for _ in client.states():
-            if holds():
-                return
+async def more_pictures(client: TeacherClient, robot: StandInRobot) -> None:
+    """Let pictures come for longer than a command waits before it is sent again."""
+    told = robot.state.tick
+    await state_where(client, lambda state: state.tick > told + 20)
 
 
 async def eventually(holds: Callable[[], bool]) -> None:
@@ -117,27 +125,26 @@ async def eventually(holds: Callable[[], bool]) -> None:
             await anyio.sleep(0.005)
 
 
-def be_patient(client: TeacherClient) -> None:
-    """Let a client wait for its answers from now on as long as a busy machine takes."""
-    client._open.sender.patience_s = LONGEST_S
+def wait_for_answers(client: TeacherClient, seconds: float = LONGEST_S) -> None:
+    """Let a client wait so long for its answers from now on; by default as long as a busy machine takes."""
+    client._open.sender.patience_s = seconds
 
 
-async def be_in_charge(client: TeacherClient, robot: StandInRobot) -> None:
-    robot.show(teacher="phone")
-    await seen(client, lambda: client.state is not None and client.state.teacher == "phone")
+async def be_taught_by(teacher: str, client: TeacherClient, robot: StandInRobot) -> None:
+    robot.show(teacher=teacher)
+    await state_where(client, teacher=teacher)
 
 
 # Seeing
 
 
-async def test_doubled_and_overtaken_pictures_never_go_back_in_time(pairing: Pairing, robot: StandInRobot) -> None:
-    bad = Weather(doubled=0.5, overtaken=0.5, overtaken_s=0.12)
+async def test_doubled_and_overtaken_pictures_never_go_back_in_time(client: TeacherClient, link: LossyLink) -> None:
+    link.down.weather = Weather(doubled=0.5, overtaken=0.5, overtaken_s=0.12)
     ticks = []
-    async with LossyLink(robot.port, down=bad) as link, TeacherClient(pairing.device.folder, port=link.port) as client:
-        async for state in client.states():
-            ticks.append(state.tick)
-            if len(ticks) == 12:
-                break
+    async for state in client.states():
+        ticks.append(state.tick)
+        if len(ticks) == 12:
+            break
     assert ticks == sorted(set(ticks))
 
 
@@ -153,17 +160,12 @@ async def test_hello_of_other_version_raises_with_remedy(client: TeacherClient, 
 
 
 async def test_correct_earlier_counts_driven_time_alone(client: TeacherClient, robot: StandInRobot) -> None:
-    async def introduces_itself(request: object) -> Reply:
-        return INTRODUCED if isinstance(request, HelloRequest) else await agrees(request)
-
-    robot.mind = introduces_itself
     robot.showing = False
     first = robot.state.tick
     pictures = []
     for after, speed_m_s in ((0, 0.3), (50, 0.3), (52, 0.0), (6000, 0.0), (6002, 0.3)):
         robot.state = replace(robot.state, tick=first + after)
-        pictures.append(robot.show(left_m_s=speed_m_s, right_m_s=speed_m_s))
-        await seen(client, lambda: client.state == pictures[-1])
+        pictures.append(await looks_at(client, robot, left_m_s=speed_m_s, right_m_s=speed_m_s))
     await client.correct_earlier("spin_left", 0.10)
     (correction,) = await robot.hears(Correct)
     assert correction.decision_tick == pictures[0].tick + 42
@@ -195,13 +197,7 @@ async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: St
 
 
 async def test_each_command_says_on_which_picture_it_was_given(client: TeacherClient, robot: StandInRobot) -> None:
-    async def introduces_itself(request: object) -> Reply:
-        return INTRODUCED if isinstance(request, HelloRequest) else await agrees(request)
-
-    robot.mind = introduces_itself
-    robot.showing = False
-    picture = robot.show()
-    await seen(client, lambda: client.state == picture)
+    picture = await looks_at(client, robot)
     expected: list[tuple[type[Any], dict[str, Any]]] = [
         (Teach, {"action": "turn_left", "decision_tick": 88, "level": MID, "alternative": True}),
         (Undo, {"lesson": "phone-01"}),
@@ -222,27 +218,17 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
     assert len({each.command_id for each in heard}) == len(heard)
 
 
-async def test_while_answers_are_lost_the_same_command_is_sent_again(pairing: Pairing, robot: StandInRobot) -> None:
-    async with (
-        LossyLink(robot.port) as link,
-        TeacherClient(pairing.device.folder, port=link.port) as client,
-        anyio.create_task_group() as tasks,
-    ):
-        await first_state(client)
-        link.down.weather = Weather(loss=1.0)
-        answers: list[Answer] = []
-
-        async def teach() -> None:
-            answers.append(await client.send(Teach, action="forward"))
-
-        tasks.start_soon(teach)
-        await robot.hears(Teach, 3, copies=True)
-        assert answers == []
-        link.down.weather = Weather()
-        await eventually(lambda: bool(answers))
-        assert answers[0].accepted
-        copies = robot.all_of(Teach, copies=True)
-        assert set(copies) == {copies[0]}
+async def test_while_answers_are_lost_the_same_command_is_sent_again(
+    client: TeacherClient, robot: StandInRobot, link: LossyLink
+) -> None:
+    link.down.weather = Weather(loss=1.0)
+    teaching = asyncio.create_task(client.send(Teach, action="forward"))
+    await robot.hears(Teach, 3, copies=True)
+    assert not teaching.done()
+    link.down.weather = Weather()
+    assert (await teaching).accepted
+    copies = robot.all_of(Teach, copies=True)
+    assert set(copies) == {copies[0]}
 
 
 async def test_before_the_first_picture_nothing_is_sent(pairing: Pairing) -> None:
@@ -254,7 +240,7 @@ async def test_before_the_first_picture_nothing_is_sent(pairing: Pairing) -> Non
             await client.send(Teach, action="forward")
         assert caught.value.code is NoAnswer.NO_STATE
         assert robot.heard == []
-        be_patient(client)
+        wait_for_answers(client)
         assert (await client.stop()).accepted
 
 
@@ -265,29 +251,21 @@ async def test_presence_is_not_sent_without_charge_or_watching(client: TeacherCl
     async def says_nothing() -> None:
         await client.stop()  # once it is answered, all that was said before it has been heard
         told = len(robot.all_of(Watch))
-        for _ in range(3):
-            newest = robot.show(teacher=robot.state.teacher)
-            await seen(client, lambda: client.state is not None and client.state.tick >= newest.tick)  # noqa: B023
+        await more_pictures(client, robot)
         await client.stop()
         assert len(robot.all_of(Watch)) == told
 
-    await be_in_charge(client, robot)
+    await be_taught_by("phone", client, robot)
     await robot.hears(Watch)
     client.watching = False
     await says_nothing()
     client.watching = True
     await robot.hears(Watch, len(robot.all_of(Watch)) + 1)
-    robot.show(teacher="laptop")
-    await seen(client, lambda: client.state is not None and client.state.teacher == "laptop")
+    await be_taught_by("laptop", client, robot)
     await says_nothing()
 
 
 # Stopping
-
-
-async def never_answers(_: object) -> Reply:
-    await anyio.sleep_forever()
-    raise AssertionError
 
 
 MOVING: dict[str, tuple[type[Single], Callable[[TeacherClient], Awaitable[Answer]]]] = {
@@ -302,61 +280,28 @@ MOVING: dict[str, tuple[type[Single], Callable[[TeacherClient], Awaitable[Answer
 @pytest.mark.parametrize("what", MOVING)
 async def test_stop_ends_moving_commands_under_way(client: TeacherClient, robot: StandInRobot, what: str) -> None:
     kind, say = MOVING[what]
-
-    async def hears_only_stops(request: object) -> Reply:
-        if isinstance(request, HelloRequest):
-            return INTRODUCED
-        return await (never_answers if isinstance(request, kind) else agrees)(request)
-
-    robot.mind = hears_only_stops
-    answers: list[Answer] = []
-
-    async def move() -> None:
-        answers.append(await say(client))
-
-    async with anyio.create_task_group() as tasks:
-        tasks.start_soon(move)
-        await robot.hears(kind, 2, copies=True)
-        stop = await client.stop()
-    assert stop.accepted
-    assert answers == [local_refusal(RefusalCode.STOPPED_MEANWHILE, command=what)]
-    # Longer than a command waits before it is sent again: four more commands go and come.
+    robot.mind = SlowMind(kind)
+    moving = asyncio.ensure_future(say(client))
+    await robot.hears(kind, 2, copies=True)
+    assert (await client.stop()).accepted
+    assert await moving == local_refusal(RefusalCode.STOPPED_MEANWHILE, command=what)
     sent = len(robot.all_of(kind, copies=True))
-    robot.mind = agrees
-    for _ in range(4):
-        newest = robot.show()
-        await seen(client, lambda: client.state is not None and client.state.tick > newest.tick)  # noqa: B023
+    await more_pictures(client, robot)
     assert len(robot.all_of(kind, copies=True)) == sent
     assert isinstance(robot.orders()[-1], StopRequest)
 
 
 async def test_a_stop_leaves_a_lesson_that_is_under_way(client: TeacherClient, robot: StandInRobot) -> None:
-    stopped = anyio.Event()
-
-    async def answers_lessons_after_the_stop(request: object) -> Reply:
-        if isinstance(request, Teach):
-            await stopped.wait()
-        return await agrees(request)
-
-    robot.mind = answers_lessons_after_the_stop
-    answers: list[Answer] = []
-
-    async def teach() -> None:
-        answers.append(await client.send(Teach, action="forward"))
-
-    async with anyio.create_task_group() as tasks:
-        tasks.start_soon(teach)
-        await robot.hears(Teach)
-        await client.stop()
-        stopped.set()
-    assert answers[0].accepted
+    robot.mind = mind = SlowMind(Teach)
+    teaching = asyncio.create_task(client.send(Teach, action="forward"))
+    await robot.hears(Teach)
+    await client.stop()
+    mind.may_answer.set()
+    assert (await teaching).accepted
 
 
 async def test_resume_after_own_stop_names_the_stops_tick(client: TeacherClient, robot: StandInRobot) -> None:
-    robot.showing = False
-    picture = robot.show()
-    await seen(client, lambda: client.state == picture)
-    stopped_tick = picture.tick + 3
+    stopped_tick = (await looks_at(client, robot)).tick + 3
 
     async def stops_later(request: object) -> Reply:
         return done(stopped_tick if isinstance(request, StopRequest) else stopped_tick + 20)
@@ -372,97 +317,82 @@ async def test_resume_after_own_stop_names_the_stops_tick(client: TeacherClient,
     assert robot.all_of(Teach)[0].seen_tick == stopped_tick + 20
 
 
-async def test_stop_unanswered_is_resent_until_answered(pairing: Pairing, robot: StandInRobot) -> None:
-    async with (
-        LossyLink(robot.port) as link,
-        TeacherClient(pairing.device.folder, port=link.port, patience_s=0.15) as client,
-    ):
-        await first_state(client)
-        tasks_before = len(asyncio.all_tasks())
-        link.cut()
-        for _ in range(3):
-            with pytest.raises(NoAnswerError) as caught:
-                await client.stop()
-            assert caught.value.code is NoAnswer.STOP_UNANSWERED
-            assert client.stop_pending
-        assert len(asyncio.all_tasks()) == tasks_before + 1
-        assert robot.all_of(StopRequest) == []
-        link.mend()
-        await eventually(lambda: not client.stop_pending)
-        assert len(robot.all_of(StopRequest)) == 1
-        await eventually(lambda: len(asyncio.all_tasks()) <= tasks_before)
+async def test_stop_unanswered_is_resent_until_answered(
+    client: TeacherClient, robot: StandInRobot, link: LossyLink
+) -> None:
+    wait_for_answers(client, 0.15)
+    tasks_before = len(asyncio.all_tasks())
+    link.cut()
+    for _ in range(3):
+        with pytest.raises(NoAnswerError) as caught:
+            await client.stop()
+        assert caught.value.code is NoAnswer.STOP_UNANSWERED
+        assert client.stop_pending
+    assert len(asyncio.all_tasks()) == tasks_before + 1
+    assert robot.all_of(StopRequest) == []
+    link.mend()
+    await eventually(lambda: not client.stop_pending)
+    assert len(robot.all_of(StopRequest)) == 1
+    await eventually(lambda: len(asyncio.all_tasks()) <= tasks_before)
 
 
 async def test_stop_unanswered_keeps_limited_copies(
-    pairing: Pairing, robot: StandInRobot, monkeypatch: pytest.MonkeyPatch
+    client: TeacherClient, link: LossyLink, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("kurt2rt.teacher.client.request_sender.RESEND_S", 0.001)
-    async with (
-        LossyLink(robot.port) as link,
-        TeacherClient(pairing.device.folder, port=link.port, patience_s=0.05) as client,
-    ):
-        await first_state(client)
-        link.cut()
-        with pytest.raises(NoAnswerError):
-            await client.stop()
-        lost = link.up.lost
-        await link.until(lambda: link.up.lost > lost + 200)
-        assert client.stop_pending
-        assert open_exchanges(client) <= 35 + 2  # and two of the observation
+    wait_for_answers(client, 0.05)
+    link.cut()
+    with pytest.raises(NoAnswerError):
+        await client.stop()
+    lost = link.up.lost
+    await link.until(lambda: link.up.lost > lost + 200)
+    assert client.stop_pending
+    assert open_exchanges(client) <= 35 + 2  # and two of the observation
 
 
 @pytest.mark.parametrize("wish", ["resume", "run", "press"])
-async def test_stop_unanswered_is_superseded_by_later_command(pairing: Pairing, robot: StandInRobot, wish: str) -> None:
-    async def does_not_hear_stops(request: object) -> Reply:
-        if isinstance(request, HelloRequest):
-            return INTRODUCED
-        return await (never_answers if isinstance(request, StopRequest) else agrees)(request)
-
-    robot.mind = does_not_hear_stops
-    async with TeacherClient(pairing.device.folder, port=robot.port, patience_s=0.15, now=Clock()) as client:
-        await first_state(client)
-        with pytest.raises(NoAnswerError):
-            await client.stop()
-        assert client.stop_pending
-        be_patient(client)
-        if wish == "resume":
-            assert (await client.send(Resume)).accepted
-        elif wish == "run":
-            assert (await client.run("forward", seconds=1.0)).accepted
-        else:
-            assert client.press(0.1, 0.1)
-            await robot.hears(Drive)
-        assert not client.stop_pending
-        stops = len(robot.all_of(StopRequest, copies=True))
-        told = robot.state.tick
-        await seen(client, lambda: client.state is not None and client.state.tick > told + 20)
-        assert len(robot.all_of(StopRequest, copies=True)) == stops
+async def test_stop_unanswered_is_superseded_by_later_command(
+    client: TeacherClient, robot: StandInRobot, wish: str
+) -> None:
+    robot.mind = SlowMind(StopRequest)
+    wait_for_answers(client, 0.15)
+    with pytest.raises(NoAnswerError):
+        await client.stop()
+    assert client.stop_pending
+    wait_for_answers(client)
+    if wish == "resume":
+        assert (await client.send(Resume)).accepted
+    elif wish == "run":
+        assert (await client.run("forward", seconds=1.0)).accepted
+    else:
+        assert client.press(0.1, 0.1)
+        await robot.hears(Drive)
+    assert not client.stop_pending
+    stops = len(robot.all_of(StopRequest, copies=True))
+    await more_pictures(client, robot)
+    assert len(robot.all_of(StopRequest, copies=True)) == stops
 
 
 # Driving
 
 
 async def test_let_go_ends_press_before_its_answer(client: TeacherClient, robot: StandInRobot) -> None:
-    async def does_not_answer_stops(request: object) -> Reply:
-        return await (never_answers if isinstance(request, StopRequest) else agrees)(request)
-
-    robot.mind = does_not_answer_stops
+    robot.mind = mind = SlowMind(StopRequest)
     client.press(0.2, 0.2)
     first = client._drive.press_id
-    async with anyio.create_task_group() as tasks:
-        tasks.start_soon(client.let_go)
-        await robot.hears(StopRequest)
-        assert not client.pressing
-        assert client.press(0.1, 0.1)
-        await robot.hears(StopRequest, 3, copies=True)
-        assert client.pressing
-        tasks.cancel_scope.cancel()
+    letting_go = asyncio.create_task(client.let_go())
+    await robot.hears(StopRequest)
+    assert not client.pressing
+    assert client.press(0.1, 0.1)
+    await robot.hears(StopRequest, 3, copies=True)
+    assert client.pressing
     second = client._drive.press_id
     assert first is not None
     assert second is not None
     assert second > first
     assert {each.press_id for each in robot.all_of(StopRequest)} == {first}
-    robot.mind = agrees
+    mind.may_answer.set()
+    assert await letting_go is not None
     await client.stop()
     assert robot.all_of(StopRequest)[-1].press_id is None
 
@@ -489,7 +419,7 @@ async def test_press_id_grows_across_restarts_and_renewals(pairing: Pairing) -> 
             stand_in_robot(teachers) as robot,
             TeacherClient(pairing.device.folder, port=robot.port, now=Clock()) as client,
         ):
-            await first_state(client)
+            await state_where(client)
             for _ in range(2):
                 before = len(robot.all_of(Drive))
                 client.press(0.1, 0.1)
@@ -530,7 +460,7 @@ async def test_driving_block_cancelled_stops(client: TeacherClient, robot: Stand
 async def test_a_client_that_ends_while_a_press_is_on_stops_the_robot(pairing: Pairing, robot: StandInRobot) -> None:
     async def drive() -> None:
         async with TeacherClient(pairing.device.folder, port=robot.port, now=Clock()) as client:
-            await first_state(client)
+            await state_where(client)
             client.press(0.2, 0.2)
             raise ZeroDivisionError
 
@@ -580,40 +510,38 @@ async def test_press_continues_if_only_late_message_is_refused(client: TeacherCl
     await client.let_go()
 
 
-async def test_a_press_ends_when_no_picture_comes_for_half_a_second(pairing: Pairing, robot: StandInRobot) -> None:
-    clock = Clock()
-    async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
-        await first_state(client)
-        robot.showing = False
-        client.press(0.2, 0.2)
-        await robot.hears(Drive)
-        clock.ahead_s += 0.6
-        await eventually(lambda: not client.pressing)
-        assert client.refusal is not None
-        assert client.refusal.outcome == Outcome(RefusalCode.PICTURE_LOST)
-        driven = len(robot.all_of(Drive))
-        assert not client.press(0.2, 0.2)
-        assert await client.let_go() is None
-        await client.stop()
-        assert len(robot.all_of(Drive)) == driven
+async def test_a_press_ends_when_no_picture_comes_for_half_a_second(
+    client: TeacherClient, robot: StandInRobot, clock: Clock
+) -> None:
+    robot.showing = False
+    client.press(0.2, 0.2)
+    await robot.hears(Drive)
+    clock.ahead_s += 0.6
+    await eventually(lambda: not client.pressing)
+    assert client.refusal is not None
+    assert client.refusal.outcome == Outcome(RefusalCode.PICTURE_LOST)
+    driven = len(robot.all_of(Drive))
+    assert not client.press(0.2, 0.2)
+    assert await client.let_go() is None
+    await client.stop()
+    assert len(robot.all_of(Drive)) == driven
 
 
 # The robot and the link
 
 
-async def test_client_after_robot_restart_proves_itself_and_goes_on(pairing: Pairing) -> None:
+async def test_client_after_robot_restart_proves_itself_and_goes_on(pairing: Pairing, clock: Clock) -> None:
     teachers = pairing.teacher.parent
-    clock = Clock()
     async with AsyncExitStack() as first_start:
         robot = await first_start.enter_async_context(in_a_task_of_its_own(stand_in_robot(teachers)))
         async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
-            await first_state(client)
+            await state_where(client)
             assert client.press(0.2, 0.2)
             await robot.hears(Drive)
             await first_start.aclose()
             async with stand_in_robot(teachers, port=robot.port, boot=b"next") as robot:
                 clock.ahead_s += 1.5
-                await seen(client, lambda: client.state is not None and client.state.boot == b"next")
+                await state_where(client, boot=b"next")
                 assert client.restarts == 1
                 assert not client.pressing
                 assert (await client.send(Teach, action="forward")).accepted
@@ -631,8 +559,7 @@ async def test_robot_without_pairing_is_told_from_silence(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("option", [b"", b"\x01\x05", b"\x07" + b"\xff" * 7, b"\x29\x01"])
-async def test_forged_answer_is_dropped(tmp_path: Path, option: bytes) -> None:
-    pairing = pair(tmp_path / "teachers", tmp_path / "devices", "phone")
+async def test_forged_answer_is_dropped(pairing: Pairing, option: bytes) -> None:
     async with (
         forger(lambda request: changed(request, option)) as port,
         TeacherClient(pairing.device.folder, port=port, patience_s=0.1) as client,
@@ -683,14 +610,12 @@ async def forger(forge: Callable[[bytes], bytes]) -> AsyncIterator[int]:
     transport.close()
 
 
-async def test_on_an_old_picture_nothing_is_said(pairing: Pairing, robot: StandInRobot) -> None:
-    clock = Clock()
-    async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
-        await be_in_charge(client, robot)
-        await robot.hears(Watch)
-        robot.showing = False
-        clock.ahead_s += 0.6
-        await client.stop()
-        told = len(robot.all_of(Watch))
-        await client.stop()
-        assert len(robot.all_of(Watch)) == told
+async def test_on_an_old_picture_nothing_is_said(client: TeacherClient, robot: StandInRobot, clock: Clock) -> None:
+    await be_taught_by("phone", client, robot)
+    await robot.hears(Watch)
+    robot.showing = False
+    clock.ahead_s += 0.6
+    await client.stop()
+    told = len(robot.all_of(Watch))
+    await client.stop()
+    assert len(robot.all_of(Watch)) == told

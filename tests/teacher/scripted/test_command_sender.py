@@ -1,40 +1,17 @@
 """Commands of a scripted teacher over the channel: an undo names the lesson of the press, or is not sent."""
 
-from collections.abc import AsyncIterator
-from pathlib import Path
-
-import pytest
-
 from kurt2rt.channel.protocol.requests import StopRequest
-from kurt2rt.channel.security.pairing import local_pairing
 from kurt2rt.channel.server.reply import Reply, done
 from kurt2rt.core.rla.lesson_history import hold_id
-from kurt2rt.core.rla.rla import AUTO, SCRIPTED
+from kurt2rt.core.rla.rla import SCRIPTED
 from kurt2rt.core.teaching.commands import Correct, HoldAction, Stop, Undo
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.scripted.command_sender import CommandSender
-from tests.teacher.client.test_client import LONGEST_S, Clock
-from tests.teacher.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
+from tests.teacher.stand_in_robot import StandInRobot
 
 TICK = 40
 WRONG = Correct("s-7", SCRIPTED, "back", decision_tick=TICK)
 UNDO = Undo("s-8", SCRIPTED, WRONG.command_id)
-
-
-@pytest.fixture
-async def robot(tmp_path: Path) -> AsyncIterator[StandInRobot]:
-    local_pairing(tmp_path / "teachers", tmp_path / "devices", AUTO)
-    async with in_a_task_of_its_own(stand_in_robot(tmp_path / "teachers")) as robot:
-        robot.show(teacher=AUTO)
-        yield robot
-
-
-@pytest.fixture
-async def sender(robot: StandInRobot, tmp_path: Path) -> AsyncIterator[CommandSender]:
-    device = TeacherClient(tmp_path / "devices" / AUTO, port=robot.port, patience_s=LONGEST_S, now=Clock())
-    async with in_a_task_of_its_own(device) as client:
-        await anext(client.states())
-        yield CommandSender(client)
 
 
 def teaches(robot: StandInRobot, lesson: str | None) -> None:
@@ -46,7 +23,8 @@ def teaches(robot: StandInRobot, lesson: str | None) -> None:
     robot.mind = answer
 
 
-async def test_send_undo_names_the_lesson_of_the_press(robot: StandInRobot, sender: CommandSender) -> None:
+async def test_send_undo_names_the_lesson_of_the_press(robot: StandInRobot, client: TeacherClient) -> None:
+    sender = CommandSender(client)
     teaches(robot, "auto-0a")
     await sender.send(WRONG, TICK)
     teaches(robot, "auto-0b")
@@ -55,14 +33,16 @@ async def test_send_undo_names_the_lesson_of_the_press(robot: StandInRobot, send
     assert [each.lesson for each in robot.all_of(Undo)] == ["auto-0a"]
 
 
-async def test_send_undo_of_a_press_that_taught_nothing_is_not_sent(robot: StandInRobot, sender: CommandSender) -> None:
+async def test_send_undo_of_a_press_that_taught_nothing_is_not_sent(robot: StandInRobot, client: TeacherClient) -> None:
+    sender = CommandSender(client)
     teaches(robot, None)
     assert await sender.send(WRONG, TICK) == 1
     await sender.send(UNDO, TICK)
     assert robot.all_of(Undo) == []
 
 
-async def test_send_undo_of_a_hold_names_all_its_lessons(robot: StandInRobot, sender: CommandSender) -> None:
+async def test_send_undo_of_a_hold_names_all_its_lessons(robot: StandInRobot, client: TeacherClient) -> None:
+    sender = CommandSender(client)
     teaches(robot, "auto-hold-1790")
     await sender.send(HoldAction(SCRIPTED, TICK, 3, "back"), TICK)
     assert await sender.send(Stop("s-1", SCRIPTED, 3), TICK) == 1

@@ -12,7 +12,6 @@ import pytest
 from config.errors import ExitCode
 from kurt2rt.channel.protocol.codec import FACTS
 from kurt2rt.channel.protocol.health import HEALTH
-from kurt2rt.channel.protocol.hello import AppraisalName
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.requests import (
     HealthRequest,
@@ -48,9 +47,19 @@ from kurt2rt.teacher.terminal.terminal_text import format_critic_change, format_
 from tests.channel.states import COMMANDS, SURPRISED, state
 from tests.runs.explain.helpers import facts, level, story
 from tests.service.health.reports import ILL
-from tests.teacher.client.test_client import INTRODUCED, LONGEST_S, Clock, be_patient, seen
+from tests.teacher.client.test_client import LONGEST_S, Clock, wait_for_answers
 from tests.teacher.page.fake_robot import A_HELLO
-from tests.teacher.stand_in_robot import Message, StandInRobot, in_a_task_of_its_own, stand_in_robot
+from tests.teacher.stand_in_robot import (
+    CRITICS,
+    Message,
+    SlowMind,
+    StandInRobot,
+    agrees,
+    in_a_task_of_its_own,
+    looks_at,
+    stand_in_robot,
+)
+from tests.teacher.states_of import state_where
 
 FACTS_NOW = facts(level((1.0,), story(1, (1.0,), "back", 0.0)))
 
@@ -82,28 +91,26 @@ class Console:
                         return line
                 await self._news.wait()
 
+    async def asks(self, line: str, answer: str) -> str:
+        """Type a line and wait until the screen shows a text; return the line of the text."""
+        self.type(line)
+        return await self.reads(answer)
 
-class RobotStub:
-    """Robot that answers each request; requests of type `slow` wait for `may_answer`."""
 
-    def __init__(self, *slow: type[Message]) -> None:
-        self.slow = slow
-        self.may_answer = anyio.Event()
+TOLD: dict[type[Message], dict[str, object]] = {
+    LessonsRequest: {"lessons": []},
+    WhyRequest: {"why": FACTS.plain_of(FACTS_NOW)},
+    HealthRequest: {"health": HEALTH.plain_of(ILL)},
+    SituationsRequest: {"situations": ["the door", "the window"]},
+}
 
-    async def __call__(self, request: Message) -> Reply:
-        if isinstance(request, self.slow):
-            await self.may_answer.wait()
-        if isinstance(request, HelloRequest):
-            return INTRODUCED
-        if isinstance(request, LessonsRequest):
-            return Reply(ReplyStatus.DONE, {"lessons": []})
-        if isinstance(request, WhyRequest):
-            return Reply(ReplyStatus.DONE, {"why": FACTS.plain_of(FACTS_NOW)})
-        if isinstance(request, HealthRequest):
-            return Reply(ReplyStatus.DONE, {"health": HEALTH.plain_of(ILL)})
-        if isinstance(request, SituationsRequest):
-            return Reply(ReplyStatus.DONE, {"situations": ["the door", "the window"]})
-        return done(7, text=f"{request.path} is done")
+
+async def tells(request: Message) -> Reply:
+    """Answer each request."""
+    if isinstance(request, HelloRequest):
+        return await agrees(request)
+    told = TOLD.get(type(request))
+    return done(7, text=f"{request.path} is done") if told is None else Reply(ReplyStatus.DONE, told)
 
 
 @asynccontextmanager
@@ -137,7 +144,7 @@ def reading_threads() -> set[threading.Thread]:
 @pytest.fixture
 async def robot(pairing: Pairing) -> AsyncIterator[StandInRobot]:
     async with in_a_task_of_its_own(stand_in_robot(pairing.teacher.parent)) as robot:
-        robot.mind = RobotStub()
+        robot.mind = tells
         robot.show(teacher="phone")  # so that who takes it sees at once that he teaches
         yield robot
 
@@ -150,30 +157,19 @@ async def console(pairing: Pairing, robot: StandInRobot) -> AsyncIterator[Consol
         yield console
 
 
-async def looked_at(console: Console, robot: StandInRobot, **changes: object) -> int:
-    """Send one more state; return its tick when the client has it."""
-    robot.showing = False
-    picture = robot.show(**changes)
-    await seen(console.client, lambda: console.client.state == picture)
-    return picture.tick
-
-
 async def test_why_explains_what_the_robot_does_now(console: Console) -> None:
-    console.type("why")
-    said = await console.reads(format_decision(FACTS_NOW))
-    assert "RLA 1" in said
+    assert "RLA 1" in await console.asks("why", format_decision(FACTS_NOW))
 
 
 async def test_health_prints_the_report_and_cures(console: Console) -> None:
-    console.type("health")
-    await console.reads("sensors silent (urgent), ticks missed; late 2.90 ms (p99), missed 7")
+    await console.asks("health", "sensors silent (urgent), ticks missed; late 2.90 ms (p99), missed 7")
     await console.reads("disk      knowledge: 412 MB free, recordings: no answer")
     await console.reads("!! the range sensors are silent, the newest is 2.5 s old (for 2 s): check that")
     await console.reads("! 3 ticks missed in the last minute")
 
 
 async def test_enter_stops_at_once_and_ends_pending_commands(console: Console, robot: StandInRobot) -> None:
-    robot.mind = RobotStub(Resume)
+    robot.mind = SlowMind(Resume, mind=tells)
     console.type("go")
     await robot.hears(Resume)
     console.type("")
@@ -183,13 +179,12 @@ async def test_enter_stops_at_once_and_ends_pending_commands(console: Console, r
 
 
 async def test_motion_typed_before_a_stop_is_not_sent_after_it(console: Console, robot: StandInRobot) -> None:
-    robot.mind = mind = RobotStub(LessonsRequest)
+    robot.mind = mind = SlowMind(LessonsRequest, mind=tells)
     for line in ("lessons", "go", "step forward", "phase 5", "stop"):
         console.type(line)
     await console.reads("/stop is done")
     mind.may_answer.set()
-    console.type("phase 2")
-    await console.reads("/phase is done")
+    await console.asks("phase 2", "/phase is done")
     for line in ("go", "step forward", "phase 5"):
         assert any(said.startswith("not done") and said.endswith(f": {line}") for said in console.said)
     assert robot.all_of(Resume) == []
@@ -197,7 +192,7 @@ async def test_motion_typed_before_a_stop_is_not_sent_after_it(console: Console,
 
 
 async def test_reward_has_the_tick_of_its_typing(console: Console, robot: StandInRobot) -> None:
-    robot.mind = mind = RobotStub(LessonsRequest)
+    robot.mind = mind = SlowMind(LessonsRequest, mind=tells)
     ticks = []
     for line, changes in (
         ("lessons", {}),
@@ -206,13 +201,13 @@ async def test_reward_has_the_tick_of_its_typing(console: Console, robot: StandI
         ("forward", {"distance": 812.5, "radius": 600.0}),
         ("spin_left", {"distance": 10.0}),
     ):
-        ticks.append(await looked_at(console, robot, **changes))
+        ticks.append((await looks_at(console.client, robot, **changes)).tick)
         console.type(line)
         # A stop does not wait for its turn, so it tells that what stands before it has been read.
         stops = len(robot.all_of(StopRequest))
         console.type("stop")
         await robot.hears(StopRequest, stops + 1)
-    await looked_at(console, robot, nearest=None)
+    await looks_at(console.client, robot, nearest=None)
     mind.may_answer.set()
     (correction,) = await robot.hears(Correct)
     assert [(each.value, each.decision_tick) for each in robot.all_of(Reward)] == [(1, ticks[1]), (-1, ticks[2])]
@@ -223,25 +218,20 @@ async def test_reward_has_the_tick_of_its_typing(console: Console, robot: StandI
 async def test_invalid_line_does_not_end_teaching(console: Console, robot: StandInRobot) -> None:
     nines = "9" * 5000
     for line in ("phase", f"step forward {nines}", "step forward 1e9"):
-        console.type(line)
-        await console.reads(f"not done, {line}: type {line.split()[0]} ")
+        await console.asks(line, f"not done, {line}: type {line.split()[0]} ")
     for line, says in (
         ("phase 12", "phase has to be one of 1, 2"),
         (f"delete {nines}", "rla_id has to be a whole number"),
         ("replace ² forward", "rla_id has to be a whole number"),
     ):
         console.said.clear()
-        console.type(line)
-        await console.reads(f"refused: {says}")
-    console.type("step forward 999999999")
-    await console.reads("refused: ticks has to be a whole number")
-    robot.mind = RobotStub(LessonsRequest)
-    console.client._open.sender.patience_s = 0.3
-    console.type("lessons")
-    await console.reads("no answer for 0.3 s")
-    be_patient(console.client)
-    console.type("phase 2")
-    await console.reads("/phase is done")
+        await console.asks(line, f"refused: {says}")
+    await console.asks("step forward 999999999", "refused: ticks has to be a whole number")
+    robot.mind = SlowMind(LessonsRequest, mind=tells)
+    wait_for_answers(console.client, 0.3)
+    await console.asks("lessons", "no answer for 0.3 s")
+    wait_for_answers(console.client)
+    await console.asks("phase 2", "/phase is done")
 
 
 async def test_a_robot_that_is_not_there_ends_teaching(pairing: Pairing) -> None:
@@ -262,16 +252,16 @@ async def test_restarted_robot_is_taken_unless_it_has_a_teacher(pairing: Pairing
     teachers = pairing.teacher.parent
     async with AsyncExitStack() as first_start, AsyncExitStack() as stack:
         robot = await first_start.enter_async_context(in_a_task_of_its_own(stand_in_robot(teachers)))
-        robot.mind = RobotStub()
+        robot.mind = tells
         robot.show(teacher="phone")
         console = await stack.enter_async_context(in_a_task_of_its_own(console_at(pairing, robot.port)))
         await console.reads("/take is done")
-        await seen(console.client, lambda: True)
+        await state_where(console.client)
         await first_start.aclose()
         console.clock.ahead_s += 2.0
         await console.reads("the robot is silent")
         async with stand_in_robot(teachers, port=robot.port, boot=b"new!", showing=False) as robot:
-            robot.mind = RobotStub()
+            robot.mind = tells
             robot.show(teacher=teacher)
             robot.showing = True
             await console.reads("the robot program was restarted")
@@ -300,33 +290,32 @@ def test_wrong_word_is_named_with_what_may_be_meant(typed: str, says: str) -> No
 
 async def test_appraisal_by_name_teaches_the_critic(console: Console, robot: StandInRobot) -> None:
     await console.reads("appraisals: bad, neutral, good")
-    tick = await looked_at(console, robot, phase=4)
+    picture = await looks_at(console.client, robot, phase=4)
     console.type("bad")
     (taught,) = await robot.hears(Appraise)
-    assert (taught.appraisal, taught.decision_tick) == ("bad", tick)
-    console.type("help")
-    await console.reads("an appraisal ")
+    assert (taught.appraisal, taught.decision_tick) == ("bad", picture.tick)
+    await console.asks("help", "an appraisal ")
 
 
 async def test_critic_prints_trust_and_opinion(console: Console, robot: StandInRobot) -> None:
-    await looked_at(console, robot, phase=4, signals_missing=(6, 2))
-    await console.reads("critic: needs 6 bad and 2 good signals from you (not trusted)")
-    await looked_at(console, robot, agreement=0.87, trusted=True, signals_missing=(0, 0), opinion=1, opinion_of=40)
-    await console.reads("critic: agrees with you 0.87 (trusted)")
-    console.type("critic")
-    await console.reads("critic: thinks good · agrees with you 0.87 (trusted)")
+    trusted = {"agreement": 0.87, "trusted": True, "signals_missing": (0, 0), "opinion": 1, "opinion_of": 40}
+    not_needed = {"role": "not needed", "bad_share": 0.019}
+    robot.showing = False
+    for shown, says in (
+        ({"phase": 4, "signals_missing": (6, 2)}, "needs 6 bad and 2 good signals from you (not trusted)"),
+        (trusted, "agrees with you 0.87 (trusted)"),
+        ({"phase": 5, "role": "measures"}, "agrees with you 0.87 (trusted; measures the driving)"),
+        (not_needed, "agrees with you 0.87 (trusted; not needed: 1 % of the driving was bad)"),
+        ({"role": "acts"}, "agrees with you 0.87 (trusted; acts)"),
+    ):
+        robot.show(**shown)
+        await console.reads(f"critic: {says}")
+    await console.asks("critic", "critic: thinks good · agrees with you 0.87 (trusted; acts)")
     await console.reads("critic: changed nothing lately")
-    await looked_at(console, robot, phase=5, role="measures", bad_share=0.0)
-    await console.reads("critic: agrees with you 0.87 (trusted; measures the driving)")
-    await looked_at(console, robot, role="not needed", bad_share=0.019)
-    await console.reads("critic: agrees with you 0.87 (trusted; not needed: 1 % of the driving was bad)")
-    await looked_at(console, robot, role="acts")
-    await console.reads("critic: agrees with you 0.87 (trusted; acts)")
 
 
 def test_format_opinion_and_change_are_one_line_each() -> None:
-    appraisals = (AppraisalName("bad", -1), AppraisalName("neutral", 0), AppraisalName("good", 1))
-    assert " 0.79 " in format_opinion(state(agreement=0.799), appraisals)
+    assert " 0.79 " in format_opinion(state(agreement=0.799), CRITICS)
     changed = LessonLine("c", "RLA 7: stand", "critic", 5, 9, "", False)
     assert format_critic_change(changed).endswith(changed.text)
     assert format_critic_change(changed._replace(undone=True)).endswith("stand, undone")
@@ -335,24 +324,20 @@ def test_format_opinion_and_change_are_one_line_each() -> None:
 async def test_behaviour_by_name_teaches_the_mid_level(console: Console, robot: StandInRobot) -> None:
     robot.show(cause="unknown", asks_at="mid", mid=COMMANDS._replace(rla=None, distance=7.0, asks=True))
     await console.reads("teach me which behaviour to follow: nearest is mid-level RLA 12 (turn_left) at 7 of 6")
-    console.type("turn_left")
-    await console.reads("/answer is done")
+    await console.asks("turn_left", "/answer is done")
     (answer,) = robot.all_of(Teach)
     assert (answer.action, answer.level, answer.alternative) == ("turn_left", "mid", False)
     robot.show(cause="rla", action="forward", rla=3, asks_at="basic", mid=COMMANDS)
     await console.reads("turn_left because mid-level RLA 12: 2 of 12 differ, R 6")
-    console.type("straight_on")
-    await console.reads("/correct is done")
+    await console.asks("straight_on", "/correct is done")
     assert [(each.action, each.level) for each in robot.all_of(Correct)] == [("straight_on", "mid")]
     console.type("also straight_on")
     await robot.hears(Teach, 2)
     assert robot.all_of(Teach)[-1].alternative
-    console.type("pursue straight_on")
-    await console.reads("/pursue is done")
+    await console.asks("pursue straight_on", "/pursue is done")
     robot.show(mid=COMMANDS._replace(behaviour="straight_on", rla=None, overridden=True))
     await console.reads("straight_on, because a teacher said so, until it has finished")
-    console.type("way")
-    assert "left, straight, right, " in await console.reads("RLA 12 knows left, straight, left")
+    assert "left, straight, right, " in await console.asks("way", "RLA 12 knows left, straight, left")
     robot.show(surprise=SURPRISED._replace(tick=robot.state.tick, new=True))
     assert "never followed" in await console.reads("surprise: 3.5 times as far off as usual")
 
@@ -365,8 +350,7 @@ async def test_places_are_named_and_sought(console: Console, robot: StandInRobot
         ("seek x_m=1.8 y_m=-3 within 0.25", "/seek"),
         ("here the door", "/here"),
     ):
-        console.type(line)
-        await console.reads(f"{path} is done")
+        await console.asks(line, f"{path} is done")
     assert [each.name for each in robot.all_of(NameSituation)] == ["the door"]
     name, rla, like = (each.goal for each in robot.all_of(Seek))
     assert (name, rla) == (NamedGoal("the door"), RlaGoal(12))
@@ -374,14 +358,12 @@ async def test_places_are_named_and_sought(console: Console, robot: StandInRobot
     assert [each.name for each in robot.all_of(BeAt)] == ["the door"]
     console.type("seek")
     await robot.hears(StopSeeking)
-    console.type("places")
-    await console.reads("named: the door, the window")
+    await console.asks("places", "named: the door, the window")
     robot.show(cause="no way", action=None, rla=None, goal="door", plan_says="no way from here to door")
     await console.reads("Stands: no way from here to door")
     console.type("seek x_m=high")  # no number: the name of a place, then
     assert (await robot.hears(Seek, 4))[-1].goal == NamedGoal("x_m=high")
-    console.type("help")
-    await console.reads("seek FEATURE=VALUE")
+    await console.asks("help", "seek FEATURE=VALUE")
 
 
 async def test_hold_sends_the_action_for_its_time(console: Console, robot: StandInRobot) -> None:
