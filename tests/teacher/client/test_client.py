@@ -44,6 +44,7 @@ from kurt2rt.core.teaching.commands import (
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError, local_refusal
 from tests.channel.lossy_link import LossyLink, Weather
+from tests.patience import eventually
 from tests.teacher.stand_in_robot import (
     SlowMind,
     StandInRobot,
@@ -116,13 +117,6 @@ async def more_pictures(client: TeacherClient, robot: StandInRobot) -> None:
     """Let pictures come for longer than a command waits before it is sent again."""
     told = robot.state.tick
     await state_where(client, lambda state: state.tick > told + 20)
-
-
-async def eventually(holds: Callable[[], bool]) -> None:
-    """Wait for a condition that sets no event."""
-    with anyio.fail_after(LONGEST_S):
-        while not holds():  # noqa: ASYNC110
-            await anyio.sleep(0.005)
 
 
 def wait_for_answers(client: TeacherClient, seconds: float = LONGEST_S) -> None:

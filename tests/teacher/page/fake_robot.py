@@ -157,9 +157,7 @@ class FakeRobot(TeacherClient):
         return self.newest_lessons
 
     async def health(self) -> HealthReport | None:
-        if self.silent:
-            raise NoAnswerError("no answer")
-        await anyio.lowlevel.checkpoint()
+        await self._reach()
         return self.report
 
     async def why(self) -> DecisionFacts | None:
@@ -182,9 +180,7 @@ class FakeRobot(TeacherClient):
         return await self._answer("stop")
 
     async def exam(self) -> ExamStatus | None:
-        if self.silent:
-            raise NoAnswerError("no answer")
-        await anyio.lowlevel.checkpoint()
+        await self._reach()
         return self.examined
 
     async def file_parts(self, name: str) -> AsyncIterator[FilePart]:
@@ -195,9 +191,7 @@ class FakeRobot(TeacherClient):
             yield FilePart(len(self.files[name]), self.files[name][offset : offset + 1000])
 
     async def simulation(self) -> SimulationView | None:
-        if self.silent:
-            raise NoAnswerError("no answer")
-        await anyio.lowlevel.checkpoint()
+        await self._reach()
         return self.simulated
 
     async def upload(self, upload: bytes, content: bytes) -> None:
@@ -207,12 +201,15 @@ class FakeRobot(TeacherClient):
 
     async def _answer(self, *told: Any) -> Answer:
         self._hear(told)
-        if self.silent:
-            raise NoAnswerError("no answer: not known whether it counted; look at the lessons")
-        await anyio.lowlevel.checkpoint()
+        await self._reach()
         if self.refuses:
             return Answer(False, "refused", self.refuses, 0)
         return Answer(True, "", f"{told[0]} done", 0, self.answers_with)
+
+    async def _reach(self) -> None:
+        if self.silent:
+            raise NoAnswerError("no answer: not known whether it counted; look at the lessons")
+        await anyio.lowlevel.checkpoint()
 
     def _hear(self, told: tuple[Any, ...]) -> None:
         self.told.append(told)

@@ -138,13 +138,19 @@ async def page(fixture: BridgeFixture) -> Page:
 async def test_take_gives_the_second_page_control(fixture: BridgeFixture) -> None:
     first, second = Page(fixture), Page(fixture)
     await first.see()
+    await fixture.wait(0.4)
     await second.see(teacher="phone")
     assert second.last("page")["seat"] == "elsewhere"
+    assert not fixture.robot.watching, "a page without control keeps no presence"
     assert (await second.command(Teach, action="forward"))["why"] == "watching"
     second.press()
-    assert second.last("let_go")["text"]
+    assert second.last("let_go")["text"] == page_text_of(PageNotice.NOT_IN_CONTROL)
     assert fixture.told("press", "/answer") == []
+    fixture.clock.advance(1.1)
+    assert (await second.command(Take))["why"] == "stale"
+    assert second.last("page")["seat"] == "elsewhere"
 
+    await second.see()
     assert (await second.command(Take))["accepted"]
     assert second.last("page")["seat"] == "here"
     assert first.last("page")["seat"] == "elsewhere"
@@ -173,18 +179,6 @@ async def test_heartbeats_keep_the_presence_for_300_ms(fixture: BridgeFixture, p
     assert fixture.robot.watching
     await fixture.wait(0.02)
     assert not fixture.robot.watching
-
-
-async def test_hidden_page_ends_presence_press_and_states(fixture: BridgeFixture, page: Page) -> None:
-    await page.see(teacher="phone")
-    page.press()
-    page.say(Hidden())
-    await settled()
-    assert not fixture.robot.watching
-    assert fixture.told("let_go") == [("let_go",)]
-    fixture.robot.show()
-    await settled()
-    assert "state" not in {each["kind"] for each in page.read()}
 
 
 async def test_silence_of_250_ms_ends_the_press(fixture: BridgeFixture, page: Page) -> None:
@@ -238,17 +232,26 @@ DRIVING = {"teacher": "phone", "action": "forward", "phase": 1}
 
 
 @pytest.mark.parametrize(
-    "how",
-    [lambda page: page.say(Hidden()), lambda page: page.fixture.bridge.disconnect(page.connection)],
-    ids=["hidden", "closed"],
+    ("how", "told"),
+    [
+        (lambda page: page.say(Release()), {("let_go",)}),
+        (lambda page: page.say(Hidden()), {("let_go",), ("stop",)}),
+        (lambda page: page.fixture.bridge.disconnect(page.connection), {("let_go",), ("stop",)}),
+    ],
+    ids=["released", "hidden", "closed"],
 )
-async def test_hiding_or_closing_the_page_stops_a_driving_robot(
-    fixture: BridgeFixture, page: Page, how: Callable[[Page], None]
+async def test_release_hiding_and_closing_end_what_they_have_to(
+    fixture: BridgeFixture, page: Page, how: Callable[[Page], None], told: set[tuple[str]]
 ) -> None:
     await page.see(**DRIVING)
+    page.press()
     how(page)
+    fixture.robot.show()
     await settled()
-    assert fixture.told("stop") == [("stop",)]
+    stops = fixture.told("let_go", "stop")
+    assert (set(stops), len(stops)) == (told, len(told))
+    is_shown = "state" in {each["kind"] for each in page.read()}
+    assert fixture.robot.watching == is_shown == (("stop",) not in told)
 
 
 @pytest.mark.parametrize("refuses", ["", "refused"])
@@ -262,19 +265,6 @@ async def test_ended_run_is_not_stopped_as_unseen(fixture: BridgeFixture, page: 
     assert fixture.told("stop") == ([("stop",)] if refuses else [])
 
 
-@pytest.mark.parametrize(
-    "how", [lambda page: page.say(Release()), lambda page: page.fixture.bridge.disconnect(page.connection)]
-)
-async def test_release_and_disconnect_end_the_press(
-    fixture: BridgeFixture, page: Page, how: Callable[[Page], None]
-) -> None:
-    await page.see(teacher="phone")
-    page.press()
-    how(page)
-    await settled()
-    assert fixture.told("let_go") == [("let_go",)]
-
-
 async def test_end_ends_only_a_press_that_is_held(fixture: BridgeFixture, page: Page) -> None:
     await page.see(teacher="phone")
     await fixture.bridge.end()
@@ -285,7 +275,7 @@ async def test_end_ends_only_a_press_that_is_held(fixture: BridgeFixture, page: 
     assert not fixture.robot.watching
 
 
-async def test_command_has_the_tick_of_the_page_s_state(fixture: BridgeFixture, page: Page) -> None:
+async def test_command_has_its_own_tick_or_that_of_the_page_s_state(fixture: BridgeFixture, page: Page) -> None:
     await page.see(tick=500)
     shown = page.picture
     await page.see(tick=600)
@@ -293,10 +283,14 @@ async def test_command_has_the_tick_of_the_page_s_state(fixture: BridgeFixture, 
     await page.command(Correct, action="spin_left", late=True)
     await page.command(Reward, value=-1)
     await page.command(Appraise, appraisal="bad")
-    assert fixture.told("/correct", "/reward", "/appraise") == [
+    await page.command(Correct, action="spin_left", decision_tick=40)
+    await page.command(Seek, goal=NamedGoal("door"))
+    assert fixture.robot.told[-5:] == [
         ("/correct", "spin_left", 500, True),
         ("/reward", -1, 500),
         ("/appraise", "bad", 500),
+        ("/correct", "spin_left", 40),
+        ("/seek", NamedGoal("door")),
     ]
 
 
@@ -310,23 +304,19 @@ async def test_command_on_no_or_an_earlier_start_s_state_is_refused(fixture: Bri
     assert fixture.told("/answer") == []
 
 
-MOVING: list[tuple[type[Single | CommandRequest], dict[str, object]]] = [
-    (Resume, {}),
-    (Take, {}),
-    (SetPhase, {"phase": Phase.AUTONOMOUS}),
-    (PlaceRequest, {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.5}),
-    (Pursue, {"behaviour": "turn_left"}),
-]
-OTHERS: list[tuple[type[Single | CommandRequest], dict[str, object]]] = [
-    (Correct, {"action": "forward"}),
-    (Appraise, {"appraisal": "bad"}),
-    (SetLessonSpeed, {"percent": 60}),
-    (HandOver, {"to": None}),
-]
-
-
 @pytest.mark.parametrize(
-    ("kind", "fields", "longest_s"), [(*each, 1.0) for each in MOVING] + [(*each, 3.0) for each in OTHERS]
+    ("longest_s", "kind", "fields"),
+    [
+        (1.0, Resume, {}),
+        (1.0, Take, {}),
+        (1.0, SetPhase, {"phase": Phase.AUTONOMOUS}),
+        (1.0, PlaceRequest, {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.5}),
+        (1.0, Pursue, {"behaviour": "turn_left"}),
+        (3.0, Correct, {"action": "forward"}),
+        (3.0, Appraise, {"appraisal": "bad"}),
+        (3.0, SetLessonSpeed, {"percent": 60}),
+        (3.0, HandOver, {"to": None}),
+    ],
 )
 async def test_command_on_an_old_state_is_refused(
     fixture: BridgeFixture, page: Page, kind: type[Single | CommandRequest], fields: dict[str, object], longest_s: float
@@ -339,15 +329,6 @@ async def test_command_on_an_old_state_is_refused(
     answer = await page.command(kind, **fields)
     assert (answer["why"], answer["text"]) == ("stale", STALE)
     assert len(fixture.told(kind.path)) == told
-
-
-async def test_take_on_an_old_state_is_refused(fixture: BridgeFixture) -> None:
-    first, second = Page(fixture), Page(fixture)
-    await first.see(teacher="phone")
-    await second.see()
-    fixture.clock.advance(1.1)
-    assert (await second.command(Take))["why"] == "stale"
-    assert second.last("page")["seat"] == "elsewhere"
 
 
 async def test_resume_on_a_state_before_a_stop_is_refused(fixture: BridgeFixture, page: Page) -> None:
@@ -365,13 +346,6 @@ async def test_resume_on_a_state_before_a_stop_is_refused(fixture: BridgeFixture
     assert fixture.told("/resume") == []
     await page.see()
     assert (await page.command(Resume))["accepted"]
-
-
-async def test_command_keeps_the_tick_that_the_page_gave(fixture: BridgeFixture, page: Page) -> None:
-    await page.see(tick=102)
-    assert (await page.command(Correct, action="spin_left", decision_tick=40))["accepted"]
-    assert (await page.command(Seek, goal=NamedGoal("door")))["accepted"]
-    assert fixture.told("/correct", "/seek") == [("/correct", "spin_left", 40), ("/seek", NamedGoal("door"))]
 
 
 async def test_refusal_and_missing_answer_reach_the_page(fixture: BridgeFixture, page: Page) -> None:
@@ -401,14 +375,6 @@ async def test_ninth_pending_command_is_busy_and_a_stop_is_sent(fixture: BridgeF
     page.say(StopNow(2))
     await settled()
     assert fixture.told("stop") == [("stop",)]
-
-
-async def test_heartbeats_without_control_keep_no_presence(fixture: BridgeFixture) -> None:
-    driver, watcher = Page(fixture), Page(fixture)
-    await driver.see()
-    await fixture.wait(0.4)
-    await watcher.see()
-    assert not fixture.robot.watching
 
 
 async def test_driving_robot_is_stopped_320_ms_after_a_heartbeat(fixture: BridgeFixture, page: Page) -> None:

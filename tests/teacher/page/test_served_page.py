@@ -43,6 +43,24 @@ class Got:
         return self.content.decode()
 
 
+async def ask(at: str, path: str, headers: dict[str, str] | None = None, *, content: bytes | None = None) -> Got:
+    """Get a path, or post content to it, at a host and port. No thread: the time of a JumpingLoop stands meanwhile."""
+    host, _, port = at.partition(":")
+    reader, writer = await asyncio.open_connection(host, int(port))
+    given = {"Host": at, "Connection": "close", **(headers or {})}
+    if content is not None:
+        given["Content-Length"] = str(len(content))
+    method = "GET" if content is None else "POST"
+    lines = [f"{method} {path} HTTP/1.1", *(f"{name}: {value}" for name, value in given.items())]
+    writer.write("".join(f"{line}\r\n" for line in (*lines, "")).encode() + (content or b""))
+    status, *head = (await reader.readuntil(b"\r\n\r\n")).split(b"\r\n")
+    answer = await reader.read()
+    writer.close()
+    with contextlib.suppress(ConnectionError):
+        await writer.wait_closed()
+    return Got(int(status.split()[1]), http.client.parse_headers(io.BytesIO(b"\r\n".join(head))), answer)
+
+
 @dataclass
 class Served:
     robot: FakeRobot
@@ -54,22 +72,11 @@ class Served:
     def cookie(self) -> dict[str, str]:
         return {"Cookie": f"{self.access.cookie_name}={self.access.cookie}"}
 
-    async def get(
-        self, path: str, headers: dict[str, str] | None = None, *, method: str = "GET", body: bytes | None = None
-    ) -> Got:
-        """Ask without a thread, so that the time of a JumpingLoop stands meanwhile."""
-        reader, writer = await asyncio.open_connection("127.0.0.1", self.port)
-        given = {"Host": f"127.0.0.1:{self.port}", "Connection": "close", **(headers or {})}
-        if body is not None:
-            given["Content-Length"] = str(len(body))
-        lines = [f"{method} {path} HTTP/1.1", *(f"{name}: {value}" for name, value in given.items())]
-        writer.write("".join(f"{line}\r\n" for line in (*lines, "")).encode() + (body or b""))
-        status, *head = (await reader.readuntil(b"\r\n\r\n")).split(b"\r\n")
-        content = await reader.read()
-        writer.close()
-        with contextlib.suppress(ConnectionError):
-            await writer.wait_closed()
-        return Got(int(status.split()[1]), http.client.parse_headers(io.BytesIO(b"\r\n".join(head))), content)
+    async def get(self, path: str, headers: dict[str, str] | None = None) -> Got:
+        return await ask(f"127.0.0.1:{self.port}", path, headers)
+
+    async def upload(self, content: bytes, headers: dict[str, str]) -> Got:
+        return await ask(f"127.0.0.1:{self.port}", "/upload", headers, content=content)
 
     def websocket(self, *, origin: str | None = "same", cookie: bool = True, host: str | None = None) -> connect:
         at = f"127.0.0.1:{self.port}"
@@ -285,14 +292,13 @@ COPY, COPIED = "wall-following-20261122T180000.zip", bytes(range(256)) * 20
 async def test_an_upload_needs_the_cookie_and_a_page_of_ours() -> None:
     async with served() as page:
         ours = {**page.cookie, "Origin": f"http://127.0.0.1:{page.port}"}
-        assert (await page.get("/upload", {"Origin": ours["Origin"]}, method="POST", body=b"PK")).status == 403
-        elsewhere = {**page.cookie, "Origin": "http://evil.example"}
-        assert (await page.get("/upload", elsewhere, method="POST", body=b"PK")).status == 403
+        assert (await page.upload(b"PK", {"Origin": ours["Origin"]})).status == 403
+        assert (await page.upload(b"PK", {**page.cookie, "Origin": "http://evil.example"})).status == 403
         assert not page.robot.told_of("upload")
-        got = await page.get("/upload", ours, method="POST", body=b"PK")
+        got = await page.upload(b"PK", ours)
         assert (got.status, len(json.loads(got.body)["upload"])) == (200, 16)
-        assert (await page.get("/upload", ours, method="POST", body=b"")).status == 400
-        large = await page.get("/upload", ours, method="POST", body=bytes(MOST_UPLOAD_BYTES + 1))
+        assert (await page.upload(b"", ours)).status == 400
+        large = await page.upload(bytes(MOST_UPLOAD_BYTES + 1), ours)
         assert large.status == 413
         assert "8 MB" in large.body
         assert len(page.robot.told_of("upload")) == 1

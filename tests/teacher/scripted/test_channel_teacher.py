@@ -19,8 +19,7 @@ from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import RefusedError
 from kurt2rt.teacher.scripted.channel_teacher import teach_by_script
 from simbridge.contracts.simulation import SimulatedPlace
-from tests.patience import PATIENCE_S
-from tests.teacher.client.test_client import eventually
+from tests.patience import PATIENCE_S, eventually
 from tests.teacher.stand_in_robot import INTRODUCED, Message, StandInRobot
 from tests.teacher.states_of import state_where
 
@@ -227,5 +226,5 @@ async def test_teach_by_script_stop_at_phase_5_keeps_it_there(client: TeacherCli
     robot.mind = mind = Mind(robot)
     mind.stop_at_phase = Phase.AUTONOMOUS
     async with taught(client, robot, short()) as said:
-        await eventually(lambda: bool(said) and "the robot stays" in said[-1])
+        await eventually(lambda: said and "the robot stays" in said[-1])
     assert robot.state.stopped == ActiveStop(StopReason.SAID_STOP, "anna")
