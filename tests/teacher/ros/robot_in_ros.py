@@ -49,9 +49,6 @@ class ServingPort(LocalPort):
         self.services[name](call)
         return call.answer
 
-    async def call(self, name: str) -> tuple[bool, str]:
-        return await self.begin(name)
-
 
 @dataclass
 class RobotInRos:
@@ -69,7 +66,7 @@ class RobotInRos:
         return [ros.decode(each, kind) for each in self.received[topic]]
 
     async def call(self, name: str) -> tuple[bool, str]:
-        return await self.services.call(name)
+        return await self.services.begin(name)
 
     async def send(self, topic: str, message: ros.Message, seconds: float, *, every_s: float = 0.05) -> None:
         """Publish a message again and again for some time."""
@@ -114,7 +111,6 @@ async def robot_in_ros(folder: Path, *, stamped: bool = False) -> AsyncIterator[
                 "scan": ros.LaserScan,
                 "odom": ros.Odometry,
                 "/tf": ros.TFMessage,
-                "question": ros.String,
                 "/diagnostics": ros.DiagnosticArray,
             }.items():
                 topics.join().subscribe(topic_of(name, kind), desk.received[name].append)

@@ -29,6 +29,14 @@ def test_twist_turns_left_by_a_quicker_right_side(twist: ros.Twist, speeds: Whee
     assert wheel_speeds(twist, LIMITS) == pytest.approx(speeds)
 
 
+@pytest.mark.parametrize("at", [1, 2, 3, 4])
+def test_twist_in_a_way_in_which_no_robot_moves_is_refused(at: int) -> None:
+    values = [0.0] * 6
+    values[at] = 0.1
+    with pytest.raises(TwistRefusedError, match="only drives along x and turns about z"):
+        wheel_speeds(of(*values), LIMITS)
+
+
 @pytest.mark.parametrize("at", range(6))
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
 def test_twist_with_a_value_that_is_not_finite_is_refused(at: int, value: float) -> None:
