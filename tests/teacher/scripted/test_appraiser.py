@@ -3,13 +3,10 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from behaviors.judges.judge import AppraisalFeatures
-from hal.robot import STANDSTILL, GuardResult
+from hal.robot import STANDSTILL
 from hal.robot_settings import load_robot
 from kurt2rt.core.decision.decision import Decision, DecisionCause
-from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
@@ -24,8 +21,7 @@ from kurt2rt.teacher.scripted.appraiser import (
 )
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher
 from kurt2rt.teacher.scripted.build import build_teacher
-from tests.core.helpers import sensed
-from tests.teacher.scripted.test_teacher import teacher
+from tests.teacher.scripted.test_teacher import record_of, teacher
 
 ROBOT = load_robot()
 TASK = taught_by(load_task("wall_following"), load_teacher("ordinary"))
@@ -46,9 +42,7 @@ def record(tick: int, verdict: int, cause: DecisionCause = DecisionCause.RLA) ->
     rla_id = 1 if cause is DecisionCause.RLA else None
     circumstances = AppraisalFeatures(*[0.0] * len(AppraisalFeatures._fields))._replace(left_m=float(verdict))
     decision = Decision(STANDSTILL, cause, "a" if driving else None, rla_id, None)
-    situation = Situation(np.zeros(1), history_frozen=not driving)
-    grant = GuardResult(STANDSTILL, (), latched=False)
-    return TickRecord(tick, 0.01 * tick, sensed(100), situation, decision, grant, (), appraisal_features=circumstances)
+    return record_of(decision, tick=tick, appraisal_features=circumstances)
 
 
 def appraiser(

@@ -1,18 +1,15 @@
 """ScriptedDispatcher: answers, corrections and commands at junctions."""
 
-import numpy as np
-
 from behaviors.metrics.task_metric import WayAhead
-from hal.robot import STANDSTILL, GuardResult
+from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import Decision, DecisionCause, JunctionEvent, MidDecision
-from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.rla import BASIC, MID, Phase
 from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, Pursue, Teach
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
 from kurt2rt.teacher.scripted.press_times import FixedTimes
-from tests.core.helpers import sensed
+from tests.teacher.scripted.test_teacher import record_of
 
 NAME = "scripted teacher"
 BEHAVIOURS = ("straight_on", "turn_left", "turn_right")
@@ -34,8 +31,7 @@ def record(mid: MidDecision, *, drives: bool = True) -> TickRecord:
     cause = DecisionCause.RLA if drives else DecisionCause.UNKNOWN
     asks_at = MID if mid.asks else BASIC
     decision = Decision(STANDSTILL, cause, "forward" if drives else None, None, None, asks_at=asks_at, mid=mid)
-    situation = Situation(np.zeros(1), history_frozen=False)
-    return TickRecord(1, 0.01, sensed(100), situation, decision, GuardResult(STANDSTILL, (), latched=False), ())
+    return record_of(decision)
 
 
 def wants(behaviour: str, *, event: JunctionEvent | None = None, overridden: bool = False) -> TickRecord:

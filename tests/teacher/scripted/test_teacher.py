@@ -38,19 +38,19 @@ def teacher(phase: Phase = Phase.CORRECTIONS, *, seed: int = 1, **changes: Any) 
     return person
 
 
-def record(count: int, cause: DecisionCause, action: str | None = None) -> TickRecord:
-    """Return a tick in which RLA 1 drives `action`."""
-    decision = Decision(STANDSTILL, cause, action, None if action is None else 1, None)
-    situation = Situation(np.zeros(1), history_frozen=action is None)
-    return TickRecord(1, 0.01, sensed(count), situation, decision, GuardResult(STANDSTILL, (), latched=False), ())
+def record_of(decision: Decision, count: int = FAR, *, tick: int = 1, **more: Any) -> TickRecord:
+    """Return a tick with this decision, in which all sensors of the robot count the same."""
+    situation = Situation(np.zeros(1), history_frozen=decision.action is None)
+    grant = GuardResult(STANDSTILL, (), latched=False)
+    return TickRecord(tick, 0.01 * tick, sensed(count), situation, decision, grant, (), **more)
 
 
 def asking(count: int = FAR) -> TickRecord:
-    return record(count, DecisionCause.UNKNOWN)
+    return record_of(Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None), count)
 
 
-def doing(action: str, count: int = FAR, cause: DecisionCause = DecisionCause.RLA) -> TickRecord:
-    return record(count, cause, action)
+def doing(action: str, count: int = FAR) -> TickRecord:
+    return record_of(Decision(STANDSTILL, DecisionCause.RLA, action, 1, None), count)
 
 
 def given(person: ScriptedTeacher, records: Sequence[TickRecord]) -> dict[int, Command]:
