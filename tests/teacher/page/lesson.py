@@ -1,6 +1,6 @@
 """A robot that drives, and the page that its teacher has open on a phone."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -36,8 +36,10 @@ class Lesson:
         self._address = f"http://127.0.0.1:{page.port}/pair?token={TOKEN}"
         self._begun = 0
 
-    def begin(self, prepare: Callable[[FakeRobot], None] = lambda _: None, **shown: object) -> None:
+    def begin(self, robot: Mapping[str, object] | None = None, **shown: object) -> Phone:
         """Start another robot, which drives by its RLA 1; close what the page has open from the robot before.
+
+        `robot` are fields of FakeRobot, `shown` those of its first state; return the phone that shows it.
 
         The page stays loaded and is introduced to the new robot, because to load it takes far longer.
         """
@@ -45,7 +47,8 @@ class Lesson:
         self.phone.time = self._time
         boot, name = f"boot {self._begun}".encode(), f"robot {self._begun}"
         self._portal.call(self.robot.reset)
-        prepare(self.robot)
+        for field, value in (robot or {}).items():
+            setattr(self.robot, field, value)
         self.robot.greeting = replace(self.robot.greeting, boot=boot, robot=name)
         self.show(**{"boot": boot, "teacher": "local", "place": A_PLACE, **shown})
         self.phone.turn(PORTRAIT)
@@ -54,6 +57,7 @@ class Lesson:
         # Its first pictures may have come before it did, and were shown as those of the robot before.
         self.show(clock_s=60.0 * self._begun)
         self.phone.wait(self._is_shown, "the page shows this robot, and is its teacher's")
+        return self.phone
 
     def show(self, **changes: object) -> State:
         """Send a changed state; return it."""

@@ -28,8 +28,8 @@ def said(phone: Phone) -> str:
     return phone.text("#said")
 
 
-def begin(phone: Phone, room: Classroom) -> None:
-    """Open the page and be the teacher."""
+def begin(phone: Phone, room: Classroom) -> Phone:
+    """Open the page and be the teacher; return the phone."""
     phone.time = room.time
     room.mend()
     phone.turn(PORTRAIT)
@@ -41,14 +41,16 @@ def begin(phone: Phone, room: Classroom) -> None:
         phone.touch("#claim-button")
     phone.wait(lambda: not phone.shows("#claim"), "this page has control")
     room.put_robot_in_the_open()
+    return phone
 
 
-def hold_stick(phone: Phone) -> None:
-    """Put a finger on the circle and push it forward."""
+def hold_stick(phone: Phone, room: Classroom) -> None:
+    """Put a finger on the circle and push it forward, until the robot drives."""
     phone.touch("#tab-drive")
     x, y = phone.middle("#stick")
     phone.finger_down(x, y)
     phone.finger_to(x, y - 60)
+    phone.wait(lambda: room.state().by_hand and room.state().left_m_s > 0.05, "the robot drives by hand")
 
 
 def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, room: Classroom) -> None:
@@ -106,8 +108,7 @@ def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, 
 
     # A finger on the circle drives the robot; lifted, it stands until GO.
     room.put_robot_in_the_open()
-    hold_stick(phone)
-    phone.wait(lambda: room.state().by_hand and room.state().left_m_s > 0.05, "the robot drives by hand")
+    hold_stick(phone, room)
     phone.wait(lambda: phone.text("#sentence") == "You drive by hand", "the page says who drives")
     phone.show("5-by-hand")
     phone.finger_up()
@@ -116,8 +117,7 @@ def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, 
     phone.show("6-let-go")
 
     # The link breaks while the circle is held: no picture, and the press is over for good.
-    hold_stick(phone)
-    phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
+    hold_stick(phone, room)
     room.cut()
     phone.wait(lambda: no_picture(phone), "the page says that it sees nothing")
     phone.wait(lambda: not phone.has("#stick.held"), "the circle lets go")
@@ -144,10 +144,8 @@ def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, 
 
 
 def test_a_page_whose_scripts_stand_still_lets_go_of_the_robot(a_phone: Phone, room: Classroom) -> None:
-    phone = a_phone
-    begin(phone, room)
-    hold_stick(phone)
-    phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
+    phone = begin(a_phone, room)
+    hold_stick(phone, room)
     room.time.pass_server_time(1.0)
     assert not room.state().by_hand
     assert room.state().left_m_s == 0
@@ -166,8 +164,7 @@ def stand(phone: Phone, room: Classroom) -> None:
 
 
 def test_keyboard_drives_while_a_key_is_held_and_stops(a_phone: Phone, room: Classroom) -> None:
-    phone = a_phone
-    begin(phone, room)
+    phone = begin(a_phone, room)
     phone.turn(LAPTOP, touch=False)
     # The browser keeps the end of a key to itself while another key or a menu is open.
     phone.key("keyDown", "KeyW")
@@ -190,8 +187,7 @@ def test_keyboard_drives_while_a_key_is_held_and_stops(a_phone: Phone, room: Cla
 
 
 def test_two_quick_touches_while_it_asks_are_one_lesson(a_phone: Phone, room: Classroom) -> None:
-    phone = a_phone
-    begin(phone, room)
+    phone = begin(a_phone, room)
     for _ in range(room.state().lessons):
         assert room.time.pass_until(lambda: room.client.send(Undo)).accepted
     phone.wait(lambda: lessons_shown(phone) == 0, "the page knows")
@@ -241,10 +237,8 @@ def test_a_stop_without_a_link_is_sent_when_the_link_is_back(a_phone: Phone, roo
 
 
 def test_a_page_that_is_left_lets_go_of_the_robot(a_phone: Phone, room: Classroom) -> None:
-    phone = a_phone
-    begin(phone, room)
-    hold_stick(phone)
-    phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
+    phone = begin(a_phone, room)
+    hold_stick(phone, room)
     phone.open("about:blank")
     phone.wait(lambda: not room.state().by_hand and room.state().left_m_s == 0, "the robot stands")
     phone.finger_up()

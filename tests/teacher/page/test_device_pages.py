@@ -148,8 +148,7 @@ async def test_renewed_device_loses_its_connection_and_its_cookie(tmp_path: Path
             lambda served: any(each.device == "phone" and each.link != before for each in served.addresses)
         )
         with pytest.raises(InvalidStatus):
-            async with websocket(phone):
-                pass
+            await websocket(phone)
         async with websocket(await come_in(pages.link("phone"))) as socket:
             await hear(socket, "page")
 

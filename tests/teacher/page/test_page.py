@@ -4,7 +4,7 @@ import hashlib
 import io
 import itertools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -27,7 +27,7 @@ from tests.channel.states import COMMANDS
 from tests.runs.explain.helpers import facts, level, story
 from tests.service.health.reports import ILL, SILENT
 from tests.teacher.page.axe import violations
-from tests.teacher.page.fake_robot import A_HELLO, A_LESSON, A_PLACE, A_SIMULATION, FakeRobot
+from tests.teacher.page.fake_robot import A_HELLO, A_LESSON, A_PLACE, A_SIMULATION
 from tests.teacher.page.lesson import Lesson
 from tests.teacher.page.phone import LAPTOP, PORTRAIT, Phone
 from tests.teacher.page.screens import LEAST_CONTRAST, TEXTS, on_each_screen
@@ -41,13 +41,9 @@ STANDS = {"action": None, "rla": None, "left_m_s": 0.0, "right_m_s": 0.0}
 SPIN_LEFT = "[data-action=spin_left]"
 
 
-def of_robot(**greeting: Any) -> Callable[[FakeRobot], None]:
-    """Return the preparation of a robot with another description."""
-
-    def prepare(robot: FakeRobot) -> None:
-        robot.greeting = replace(A_HELLO, **greeting)
-
-    return prepare
+def of_robot(**greeting: Any) -> dict[str, object]:
+    """Return the fields of a robot with another description."""
+    return {"greeting": replace(A_HELLO, **greeting)}
 
 
 # Lessons and holds.
@@ -60,8 +56,7 @@ def finger_down(lesson: Lesson) -> None:
 
 
 def test_button_held_holds_and_tapped_corrects(a_lesson: Lesson) -> None:
-    phone = a_lesson.phone
-    a_lesson.begin(standing=Standing())
+    phone = a_lesson.begin(standing=Standing())
     finger_down(a_lesson)
     assert phone.has(f"{SPIN_LEFT}.held")
     phone.wait(lambda: len(a_lesson.told("hold")) > 5, "it is sent again and again")
@@ -78,19 +73,18 @@ def test_button_held_holds_and_tapped_corrects(a_lesson: Lesson) -> None:
 
 
 def test_hold_ends_with_the_page_and_does_not_come_back(a_lesson: Lesson) -> None:
-    a_lesson.begin(standing=Standing())
+    phone = a_lesson.begin(standing=Standing())
     finger_down(a_lesson)
-    a_lesson.phone.run("dispatchEvent(new Event('blur'))")
-    a_lesson.phone.wait(lambda: a_lesson.robot.told_of("let_go"), "it is released")
+    phone.run("dispatchEvent(new Event('blur'))")
+    phone.wait(lambda: a_lesson.robot.told_of("let_go"), "it is released")
     count = len(a_lesson.told("hold"))
-    a_lesson.phone.pass_time(0.2)
+    phone.pass_time(0.2)
     assert len(a_lesson.told("hold")) == count
-    a_lesson.phone.finger_up()
+    phone.finger_up()
 
 
 def test_lessons_of_a_hold_are_counted_and_undone_together(a_lesson: Lesson) -> None:
-    phone, held = a_lesson.phone, HoldState("local", "spin_left", "local-hold-7", 3, True)
-    a_lesson.begin(standing=Standing())
+    phone, held = a_lesson.begin(standing=Standing()), HoldState("local", "spin_left", "local-hold-7", 3, True)
     finger_down(a_lesson)
     a_lesson.show(hold=held, by_hand=True)
     a_lesson.reads("#said", "spin left is held, lessons: 3")
@@ -104,24 +98,17 @@ def test_lessons_of_a_hold_are_counted_and_undone_together(a_lesson: Lesson) -> 
 def test_lesson_that_contradicts_is_shown_and_undone_alone(a_lesson: Lesson) -> None:
     slip = Contradicting("local-hold-1/95", 7, "whirl_left", 4, ("forward", "bear_left"))
     hold = A_LESSON._replace(command_id="local-hold-1", text="held forward, whirl_left: 2 lessons", against=(slip,))
-
-    def with_a_slip(robot: FakeRobot) -> None:
-        robot.newest_lessons = (hold,)
-
-    a_lesson.begin(with_a_slip, standing=Standing())
-    a_lesson.phone.touch("#tab-lessons")
+    phone = a_lesson.begin({"newest_lessons": (hold,)}, standing=Standing())
+    phone.touch("#tab-lessons")
     a_lesson.reads("#lesson-list .contradicts", "RLA 7 says whirl left")
-    a_lesson.phone.touch("#lesson-list .contradicts button")
-    a_lesson.phone.touch("#lesson-list .contradicts button")
-    a_lesson.phone.wait(lambda: a_lesson.told("/undo") == [slip.command_id], "the one lesson is undone")
-    a_lesson.phone.touch("#tab-teach")
+    phone.touch("#lesson-list .contradicts button")
+    phone.touch("#lesson-list .contradicts button")
+    phone.wait(lambda: a_lesson.told("/undo") == [slip.command_id], "the one lesson is undone")
+    phone.touch("#tab-teach")
 
 
 def test_page_that_only_watches_reads_lessons_and_explains(a_lesson: Lesson) -> None:
-    phone = a_lesson.phone
-    a_lesson.begin(
-        lambda robot: setattr(robot, "newest_lessons", (A_LESSON._replace(teacher="local"),)), taught_by="local"
-    )
+    phone = a_lesson.begin({"newest_lessons": (A_LESSON._replace(teacher="local"),)}, taught_by="local")
     a_lesson.reads("#sentence", "RLA 1 does forward, taught by you")
     phone.touch("#tab-lessons")
     assert phone.shows("#lesson-list button")
@@ -137,9 +124,8 @@ def test_page_that_only_watches_reads_lessons_and_explains(a_lesson: Lesson) -> 
 
 
 def test_shown_segments_are_taught_but_for_those_left_out(a_lesson: Lesson) -> None:
-    phone = a_lesson.phone
     shown = ShownState("local", 91, ("forward", "spin_left", "forward"), (100, 280, 340), (180, 60, 240))
-    a_lesson.begin(shown=shown, stopped=ActiveStop(StopReason.LET_GO, "local"), left_m_s=0.0, right_m_s=0.0)
+    phone = a_lesson.begin(shown=shown, stopped=ActiveStop(StopReason.LET_GO, "local"), left_m_s=0.0, right_m_s=0.0)
     phone.touch("#tab-drive")
     phone.wait(lambda: phone.shows("#shown"), "the drive is offered")
     phone.touch("#shown-list button:nth-child(2)")
@@ -214,8 +200,7 @@ return [mark.x + mark.width / 2, mark.y + mark.height / 2];
 
 
 def test_time_line_shows_a_bump_where_it_was(a_lesson: Lesson) -> None:
-    phone = a_lesson.phone
-    a_lesson.begin(standing=Standing(), tick=DRIVE_FROM, left_m_s=0.3, right_m_s=0.3)
+    phone = a_lesson.begin(standing=Standing(), tick=DRIVE_FROM, left_m_s=0.3, right_m_s=0.3)
     for second, touches in enumerate((0, 0, 1, 0, 0, 0, 0), start=1):
         place = A_PLACE._replace(x_m=second / 10)
         a_lesson.show(tick=DRIVE_FROM + second * EACH, clock_s=second, bumpers=touches, rla=second, place=place)
@@ -271,17 +256,13 @@ UNPLUG = "pads[0] = null; delete document.visibilityState; tellPad('gamepaddisco
 @pytest.fixture
 def driving(a_lesson: Lesson) -> Iterator[Lesson]:
     """Return a page with a new gamepad, whose buttons the page has seen released."""
-    a_lesson.begin()
-    a_lesson.phone.run(PAD)
+    phone = a_lesson.begin()
+    phone.run(PAD)
     a_lesson.reads("#said", "gamepad: hold a shoulder button")
-    a_lesson.phone.pass_time(0.2)
+    phone.pass_time(0.2)
     yield a_lesson
-    a_lesson.phone.run(UNPLUG)
-    a_lesson.phone.wait(lambda: not a_lesson.robot.pressing, "it lets go of the robot of this test")
-
-
-def presses(lesson: Lesson) -> list[tuple[object, ...]]:
-    return [each for each in lesson.robot.told if each[0] == "press"]
+    phone.run(UNPLUG)
+    phone.wait(lambda: not a_lesson.robot.pressing, "it lets go of the robot of this test")
 
 
 def hold_shoulder(lesson: Lesson) -> None:
@@ -295,9 +276,9 @@ def hold_shoulder(lesson: Lesson) -> None:
 def test_gamepad_drives_while_its_shoulder_button_is_held(driving: Lesson) -> None:
     driving.phone.run("pad.axes = [0, -1, 0, 0]")
     driving.phone.pass_time(0.2)
-    assert presses(driving) == [], "the stick alone drives nothing"
+    assert driving.robot.told_of("press") == [], "the stick alone drives nothing"
     hold_shoulder(driving)
-    assert presses(driving)[-1] == ("press", 0.3, 0.3)
+    assert driving.robot.told_of("press")[-1] == ("press", 0.3, 0.3)
     driving.phone.run("shoulder(false)")
     driving.phone.wait(lambda: not driving.robot.pressing, "it lets go")
 
@@ -318,9 +299,9 @@ def test_gamepad_lets_go_for_good_until_pressed_again(driving: Lesson, end: str)
     phone.wait(lambda: not driving.robot.pressing, "it lets go")
     # The button is still held when all is well again: that is no new press.
     phone.run("pad.connected = true; delete document.visibilityState; pads[0] = pad; tellPad('gamepadconnected');")
-    count = len(presses(driving))
+    count = len(driving.robot.told_of("press"))
     phone.pass_time(0.2)
-    assert len(presses(driving)) == count
+    assert len(driving.robot.told_of("press")) == count
     hold_shoulder(driving)
 
 
@@ -337,8 +318,7 @@ _GO = "const go = document.querySelector('#go'); return [go.disabled, getCompute
 
 
 def test_latched_guard_is_the_reason_to_stand_and_go_stands_out(a_lesson: Lesson) -> None:
-    phone = a_lesson.phone
-    a_lesson.begin(standing=Standing())
+    phone = a_lesson.begin(standing=Standing())
     assert phone.run(_GO) == [True, "none"]
     latched = Standing(StandReason.COMPUTER_TOO_SLOW, True, stall_s=0.12)
     a_lesson.show(standing=latched, left_m_s=0.0, right_m_s=0.0)  # cause and action stay those of the rule
@@ -349,8 +329,8 @@ def test_latched_guard_is_the_reason_to_stand_and_go_stands_out(a_lesson: Lesson
 
 
 def test_question_is_announced_once_with_places_and_centimetres(a_lesson: Lesson) -> None:
-    a_lesson.begin(of_robot(law=infrared_law(load_robot().infrared)))
-    phone, said = a_lesson.phone, "return document.querySelector('#announce').textContent;"
+    phone = a_lesson.begin(of_robot(law=infrared_law(load_robot().infrared)))
+    said = "return document.querySelector('#announce').textContent;"
     live = phone.run("return [...document.querySelectorAll('[role=status], [aria-live]')].map((e) => e.id);")
     assert (live, phone.run(said)) == (["announce"], "")
     a_lesson.show(**ASKS)
@@ -364,13 +344,9 @@ def test_question_is_announced_once_with_places_and_centimetres(a_lesson: Lesson
 
 
 def test_question_is_drawn_next_to_what_was_taught(a_lesson: Lesson) -> None:
-    phone, sensors = a_lesson.phone, tuple(each.name for each in A_HELLO.sensors)
     taught = level((200.0,) * 18, story(1, (90.0,) * 18, "forward", 1100.0))
-
-    def prepare(robot: FakeRobot) -> None:
-        robot.decided = facts(replace(taught, names=sensors), "unknown", None)
-
-    a_lesson.begin(prepare)
+    sensors = tuple(each.name for each in A_HELLO.sensors)
+    phone = a_lesson.begin({"decided": facts(replace(taught, names=sensors), "unknown", None)})
     a_lesson.show(**ASKS)
     phone.wait(lambda: phone.shows("#compare"), "the condition has come")
     label = phone.run("return document.querySelector('#compare').getAttribute('aria-label');")
@@ -384,8 +360,7 @@ def test_question_is_drawn_next_to_what_was_taught(a_lesson: Lesson) -> None:
 
 
 def test_open_question_keeps_its_words_while_noise_lets_it_drive(a_lesson: Lesson) -> None:
-    phone = a_lesson.phone
-    a_lesson.begin(standing=Standing())
+    phone = a_lesson.begin(standing=Standing())
     phone.run("window.now = performance.now; window.heldMs = now() + 5000; performance.now = () => window.heldMs;")
     asks = Standing(StandReason.ASKS, asks=True)
     a_lesson.show(cause="unknown", action=None, rla=None, standing=asks, distance=710.0)
@@ -404,9 +379,14 @@ def test_open_question_keeps_its_words_while_noise_lets_it_drive(a_lesson: Lesso
 
 # The room.
 
-_PAINTED = """
-const [canvas, box] = ["#world-view", "#stage"].map((each) => document.querySelector(each));
+_WORLD = """
+const canvas = document.querySelector("#world-view");
 const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+"""
+_PAINTED = (
+    _WORLD
+    + """
+const box = document.querySelector("#stage");
 let [painted, red] = [0, 0];
 for (let i = 0; i < data.length; i += 4) {
   painted += data[i + 3] > 0;
@@ -415,6 +395,7 @@ for (let i = 0; i < data.length; i += 4) {
 const ratio = canvas.width / canvas.clientWidth;
 return [painted / ratio ** 2 / (box.clientWidth * box.clientHeight), red];
 """
+)
 
 
 def test_room_fills_its_box_and_what_lies_ahead_is_red(a_lesson: Lesson) -> None:
@@ -433,19 +414,19 @@ def test_room_fills_its_box_and_what_lies_ahead_is_red(a_lesson: Lesson) -> None
     assert not a_lesson.phone.shows("#world-view")
 
 
-_BODY = """
-const canvas = document.querySelector("#world-view");
-const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+_BODY = (
+    _WORLD
+    + """
 const pale = [...Array(data.length / 4).keys()].filter((i) => data[4 * i] === 0xdb && data[4 * i + 2] === 0xf5);
 const middle = (of) => pale.reduce((sum, i) => sum + of(i), 0) / pale.length * canvas.clientWidth / canvas.width;
 const box = canvas.getBoundingClientRect();
 return [box.left + middle((i) => i % canvas.width), box.top + middle((i) => Math.floor(i / canvas.width))];
 """
+)
 
 
 def test_robot_is_dragged_along_the_axes_of_a_turned_room(a_lesson: Lesson) -> None:
-    phone = a_lesson.phone
-    a_lesson.begin()
+    phone = a_lesson.begin()
     phone.wait(lambda: phone.shows("#world-view"), "the room has come")
     x, y = phone.run(_BODY)
     phone.drag_by_mouse(x, y, (x - 60, y + 30))
@@ -456,24 +437,25 @@ def test_robot_is_dragged_along_the_axes_of_a_turned_room(a_lesson: Lesson) -> N
     assert (round(left / down, 1), left > 0.5) == (2.0, True), "the right of the picture is up in the room"
 
 
-_BLUE = """
-const canvas = document.querySelector("#world-view");
-const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+_BLUE = (
+    _WORLD
+    + """
 const blue = [...Array(data.length / 4).keys()].filter((i) => data[4 * i] === 0x0b && data[4 * i + 2] === 0x8f);
 const [xs, ys] = [blue.map((i) => i % canvas.width), blue.map((i) => Math.floor(i / canvas.width))];
 const of = (pick, all) => all.reduce((a, b) => pick(a, b));
 const least = [of(Math.min, xs), of(Math.min, ys), canvas.width - of(Math.max, xs), canvas.height - of(Math.max, ys)];
 return of(Math.min, least) * canvas.clientWidth / canvas.width;
 """
+)
 
 
 def test_robot_that_faces_a_wall_is_whole_in_the_picture(a_lesson: Lesson) -> None:
-    a_lesson.begin(standing=Standing())
-    a_lesson.phone.wait(lambda: a_lesson.phone.shows("#world-view"), "the room has come")
+    phone = a_lesson.begin(standing=Standing())
+    phone.wait(lambda: phone.shows("#world-view"), "the room has come")
     for turns, (x, y) in enumerate(((2.75, 2.0), (1.5, 3.75), (0.25, 2.0), (1.5, 0.25))):
         a_lesson.show(place=A_PLACE._replace(x_m=x, y_m=y, heading_rad=turns * math.pi / 2), clock_s=float(turns))
         a_lesson.reaches(f"0:0{turns}")
-        assert a_lesson.phone.run(_BLUE) >= 3, f"body and handle are inside, with a margin, after {turns} turns"
+        assert phone.run(_BLUE) >= 3, f"body and handle are inside, with a margin, after {turns} turns"
 
 
 # The mid level.
@@ -483,13 +465,9 @@ READY = "return !document.querySelector('.turned, [aria-busy=true]');"
 
 @pytest.fixture
 def junction(a_lesson: Lesson) -> Lesson:
-    def prepare(robot: FakeRobot) -> None:
-        mid = MidIntroduction("history", 12, 6.0)
-        turns = ("straight_on", "turn_left", "turn_right")
-        robot.greeting = replace(A_HELLO, actions=ACTIONS, behaviours=turns, mid=mid, seeks=True)
-        robot.named = ("door", "window")
-
-    a_lesson.begin(prepare, behaviour="turn_left", mid=COMMANDS)
+    mid, turns = MidIntroduction("history", 12, 6.0), ("straight_on", "turn_left", "turn_right")
+    robot = of_robot(actions=ACTIONS, behaviours=turns, mid=mid, seeks=True)
+    a_lesson.begin({**robot, "named": ("door", "window")}, behaviour="turn_left", mid=COMMANDS)
     a_lesson.reads("#sentence", "RLA 1 of turn left does forward")
     return a_lesson
 
@@ -554,10 +532,9 @@ def test_places_get_names_and_are_sought(junction: Lesson) -> None:
 
 
 def test_phase_4_rewards_teach_the_critic_and_show_agreement(a_lesson: Lesson) -> None:
-    phone = a_lesson.phone
     appraisals = (AppraisalName("good", 1), AppraisalName("bad", -1), AppraisalName("neutral", 0))
-    prepare = of_robot(actions=ACTIONS, appraisals=appraisals, trusted_from=0.8)
-    a_lesson.begin(prepare, phase=4, opinion=1, opinion_of=40, signals_missing=(6, 2))
+    robot = of_robot(actions=ACTIONS, appraisals=appraisals, trusted_from=0.8)
+    phone = a_lesson.begin(robot, phase=4, opinion=1, opinion_of=40, signals_missing=(6, 2))
     a_lesson.reads("#opinion", "critic: thinks good")
     assert phone.text("#trusted").startswith("not ")
     phone.touch("[data-appraisal=bad]")
@@ -579,10 +556,8 @@ def test_phase_4_rewards_teach_the_critic_and_show_agreement(a_lesson: Lesson) -
 
 
 def test_faults_are_coloured_with_time_and_cure(a_lesson: Lesson) -> None:
-    phone = a_lesson.phone
-    a_lesson.begin()
-    assert a_lesson.robot.state is not None
-    later = a_lesson.robot.state.tick + 100
+    phone = a_lesson.begin()
+    later = a_lesson.show().tick + 100
     a_lesson.robot.report = replace(ILL, tick=later)
     a_lesson.show(tick=later)
     a_lesson.reads("#health", "sensors silent, …")
@@ -600,8 +575,7 @@ def test_faults_are_coloured_with_time_and_cure(a_lesson: Lesson) -> None:
 
 
 def test_a_touch_on_its_sentence_tells_why_it_does_so(a_lesson: Lesson) -> None:
-    phone, nearest = a_lesson.phone, story(1, (120.0, 80.0), "forward", 5.0)
-    a_lesson.begin()
+    phone, nearest = a_lesson.begin(), story(1, (120.0, 80.0), "forward", 5.0)
     a_lesson.robot.silent = True
     phone.touch("#sentence")
     a_lesson.reads("#explanation-says", "no answer")
@@ -622,21 +596,19 @@ def picture() -> bytes:
 
 
 def test_an_exam_ends_in_a_picture_and_a_verdict(a_lesson: Lesson) -> None:
-    phone = a_lesson.phone
+    phone = a_lesson.begin()
     verdicts = (
         WorldVerdict("A", True, "4.86 of the teacher's 5.00 laps, no collision"),
         WorldVerdict("cave", False, "not judged: the policy itself gets nowhere here (0.02 laps)", judged=False),
     )
     over = ExamStatus(False, 1.0, "Passed in 1 of 1 worlds; 1 not judged.", verdicts, "wall-following.png")
-    a_lesson.begin()
     a_lesson.robot.files[over.picture] = picture()
     phone.touch("#tab-more")
     a_lesson.robot.examined = ExamStatus(True, 0.42, "exam without teacher, world b")
     phone.touch("#examine")
     a_lesson.reads("#exam-says", "42 %: exam without teacher, world b")
-    assert a_lesson.robot.state is not None
     a_lesson.robot.examined = over
-    a_lesson.show(tick=a_lesson.robot.state.tick + 50)
+    a_lesson.show(tick=a_lesson.show().tick + 50)
     a_lesson.reads("#exam-verdict", over.text)
     a_lesson.reads("#exam-worlds", "World cave: not judged")
     loaded = "const e = document.querySelector('#exam-picture'); return e.complete && e.naturalWidth;"
@@ -647,8 +619,7 @@ def test_an_exam_ends_in_a_picture_and_a_verdict(a_lesson: Lesson) -> None:
 
 
 def test_a_copy_is_downloaded_whole_and_another_loaded(a_lesson: Lesson, tmp_path: Path) -> None:
-    phone, name, content = a_lesson.phone, "walls.zip", bytes(range(256)) * 20
-    a_lesson.begin()
+    phone, name, content = a_lesson.begin(), "walls.zip", bytes(range(256)) * 20
     a_lesson.robot.files[name] = content
     a_lesson.robot.answers_with = {"name": name, "sha256": "ab" * 32, "size": len(content)}
     phone.touch("#tab-more")
@@ -675,8 +646,7 @@ def choose(phone: Phone, selector: str, value: str) -> None:
 
 
 def test_simulation_and_speed_of_lessons_are_chosen_in_more(a_lesson: Lesson) -> None:
-    phone = a_lesson.phone
-    a_lesson.begin(standing=Standing(), phase=2)
+    phone = a_lesson.begin(standing=Standing(), phase=2)
     phone.touch("#tab-more")
     phone.wait(lambda: phone.run("return document.querySelector('#sim-task').value;"), "it knows what is simulated")
     choose(phone, "#lesson-speed", "60")
@@ -699,8 +669,7 @@ def test_simulation_and_speed_of_lessons_are_chosen_in_more(a_lesson: Lesson) ->
 
 
 def test_a_minute_without_help_suggests_the_exam(a_lesson: Lesson) -> None:
-    phone = a_lesson.phone
-    a_lesson.begin(of_robot(), progress=Progress(60, 91, 1))
+    phone = a_lesson.begin(progress=Progress(60, 91, 1))
     a_lesson.reads("#drove-text", "91 %")
     a_lesson.show(progress=Progress(60, 99, 0))
     a_lesson.reads("#said", "It has not asked for a minute. Exam?")
@@ -709,8 +678,8 @@ def test_a_minute_without_help_suggests_the_exam(a_lesson: Lesson) -> None:
 
 
 def test_first_lap_suggests_exam_and_slow_computer_is_slowed(a_lesson: Lesson) -> None:
-    phone, simulated = a_lesson.phone, replace(A_SIMULATION, unit="laps", progress=0.96)
-    a_lesson.begin(standing=Standing())
+    phone = a_lesson.begin(standing=Standing())
+    simulated = replace(A_SIMULATION, unit="laps")
     tick = itertools.count(10_000, 100)
     for speed, reached, laps in ((1, 1.0, 0.96), (1, 1.0, 1.02), (3, 2.4, 1.1)):
         a_lesson.robot.simulated = replace(simulated, speed=speed, reached=reached, progress=laps)
@@ -728,8 +697,8 @@ def test_first_lap_suggests_exam_and_slow_computer_is_slowed(a_lesson: Lesson) -
 
 
 def test_page_in_its_main_states_breaks_no_rule_of_axe(a_lesson: Lesson) -> None:
-    phone = a_lesson.phone
-    a_lesson.begin(of_robot(what="Teach it to follow the wall on its left"), progress=Progress(60, 87, 3), **ASKS)
+    robot = of_robot(what="Teach it to follow the wall on its left")
+    phone = a_lesson.begin(robot, progress=Progress(60, 87, 3), **ASKS)
     a_lesson.reads("#differences", "front left")
     assert_accessible(phone, "asks")
     a_lesson.show(cause="rla", action="forward", rla=1, question=())
@@ -767,8 +736,9 @@ return [...document.querySelectorAll("#actions button, #rewards button, #tabs bu
 
 
 def test_rare_actions_unfold_and_no_answer_moves_any(a_lesson: Lesson) -> None:
-    phone, long = a_lesson.phone, "RLA 10 taught: back; all near it say curve_right, spin_right, forward (RLA 9 first)"
-    a_lesson.begin(of_robot(actions=ACTIONS), standing=Standing(StandReason.ASKS, asks=True), nearest_action="flee")
+    long = "RLA 10 taught: back; all near it say curve_right, spin_right, forward (RLA 9 first)"
+    asks = Standing(StandReason.ASKS, asks=True)
+    phone = a_lesson.begin(of_robot(actions=ACTIONS), standing=asks, nearest_action="flee")
     scrolls = "const e = document.querySelector('#teach'); return e.scrollHeight - e.clientHeight;"
     assert phone.run("return document.querySelector('#stage').clientHeight") >= 240, "the picture has its room"
     assert (len(phone.texts("#actions [data-action]")), phone.run(scrolls)) == (13, 0)

@@ -170,19 +170,16 @@ async def test_get_of_a_foreign_host_is_421() -> None:
             assert (await page.get(path, {**page.cookie, "Host": f"evil.example:{page.port}"})).status == 421
         assert (await page.get("/", {**page.cookie, "Host": f"desk:{page.port}"})).status == 200
         with pytest.raises(InvalidStatus):
-            async with page.websocket(host="evil.example", origin="http://evil.example"):
-                pass
+            await page.websocket(host="evil.example", origin="http://evil.example")
 
 
 async def test_websocket_of_another_origin_is_refused() -> None:
     async with served() as page:
         for origin in (None, "null", "http://evil.example", "https://127.0.0.1"):
             with pytest.raises(InvalidStatus):
-                async with page.websocket(origin=origin):
-                    pass
+                await page.websocket(origin=origin)
         with pytest.raises(InvalidStatus):
-            async with page.websocket(cookie=False):
-                pass
+            await page.websocket(cookie=False)
 
 
 async def test_the_page_runs_no_foreign_script_and_is_in_no_frame() -> None:
@@ -265,8 +262,7 @@ async def test_public_address_is_served_for_a_tls_proxy() -> None:
                 await hear(socket, "page")
         for origin in ("http://robot.example", "https://evil.example", "https://robot.example:444"):
             with pytest.raises(InvalidStatus):
-                async with page.websocket(host=None, origin=origin):
-                    pass
+                await page.websocket(host=None, origin=origin)
 
 
 async def test_a_port_in_use_is_said() -> None:
