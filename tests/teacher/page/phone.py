@@ -83,7 +83,7 @@ class Phone:
         self._at: str | None = None
         self.time: PageTime | None = None
         """Time of the server whose page is open; None: of the page alone."""
-        self._before = self._add_before_scripts(_HAS_BEEN_HERE)
+        self._add_before_scripts(_HAS_BEEN_HERE)
         self._add_before_scripts(page_time.SCRIPT)
         self._add_before_scripts(_KEEPS_WHAT_IT_SAYS)
 
@@ -216,15 +216,7 @@ class Phone:
         try:
             yield
         finally:
-            self._remove_before_scripts(added)
-
-    def forget(self) -> None:
-        """Leave the page, and be as one that was never there: no cookies, nothing stored, nothing said."""
-        self.leave()
-        self.tools.call("Network.clearBrowserCookies")
-        self.tools.call("Storage.clearDataForOrigin", origin="*", storageTypes="all")
-        self.turn(PORTRAIT)
-        self.complaints()
+            self.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", added)
 
     def show(self, name: str) -> None:
         """Keep a picture of the screen where the environment asks for it."""
@@ -239,9 +231,6 @@ class Phone:
     def _add_before_scripts(self, script: str) -> dict[str, Any]:
         added: dict[str, Any] = self.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": script})
         return added
-
-    def _remove_before_scripts(self, added: dict[str, Any]) -> None:
-        self.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", added)
 
     def _finger(self, kind: str, points: list[dict[str, float]]) -> None:
         self.tools.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)

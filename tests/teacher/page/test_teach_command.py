@@ -1,17 +1,14 @@
 """`kurt2rt teach` as a process of its own."""
 
-import http.client
-import json
 import signal
 import socket
 from pathlib import Path
-from urllib.parse import urlsplit
-
-from websockets.sync.client import connect
 
 from kurt2rt.channel.security.pairing import pair, revoke
 from tests.cli.helpers import running
 from tests.patience import PATIENCE_S
+from tests.teacher.page.test_device_pages import come_in, websocket
+from tests.teacher.page.test_served_page import hear
 
 HERE = ("--page-address", "127.0.0.1")
 """A phone is told this address also where this machine is in no network."""
@@ -25,43 +22,24 @@ def free_udp_port() -> int:
         return port
 
 
-def cookie_of(address: str) -> str:
-    """Open the address that was printed, as a browser does."""
-    parts = urlsplit(address)
-    connection = http.client.HTTPConnection(parts.netloc, timeout=PATIENCE_S)
-    try:
-        connection.request("GET", f"{parts.path}?{parts.query}")
-        response = connection.getresponse()
-        response.read()
-        assert response.status == 200
-        return str(response.headers["Set-Cookie"]).split(";")[0]
-    finally:
-        connection.close()
-
-
-def test_the_page_says_that_there_is_no_robot_and_ends_when_told(tmp_path: Path) -> None:
+async def test_the_page_says_that_there_is_no_robot_and_ends_when_told(tmp_path: Path) -> None:
     port = free_udp_port()
     with running("teach", "--page-port", "0", "--port", str(port), folder=tmp_path) as page:
         address = page.wait_for("http://").strip()
         assert address.startswith("http://127.0.0.1:")
-        at = urlsplit(address).netloc
-        headers = {"Cookie": cookie_of(address), "Origin": f"http://{at}"}
-        with connect(f"ws://{at}/robot", additional_headers=headers, proxy=None, open_timeout=PATIENCE_S) as websocket:
-            said: dict[str, str] = {}
-            while said.get("kind") != "silent":
-                said = json.loads(websocket.recv(timeout=PATIENCE_S))
+        async with websocket(await come_in(address)) as link:
+            said = await hear(link, "silent")
         assert f"127.0.0.1:{port}" in said["text"]
         ended = page.end(signal.SIGTERM)
     assert ended.exit_code == 0
     assert ended.err == ""
 
 
-def test_a_pairing_that_is_revoked_ends_its_page(tmp_path: Path) -> None:
+async def test_a_pairing_that_is_revoked_ends_its_page(tmp_path: Path) -> None:
     teachers, devices = tmp_path / "var" / "teachers", tmp_path / "var" / "devices"
     pair(teachers, devices, "phone")
     with running("teach", "--device", "phone", "--page-port", "0", *HERE, folder=tmp_path) as page:
-        address = urlsplit(page.wait_for("http://").strip())
-        cookie_of(address._replace(netloc=f"127.0.0.1:{address.port}").geturl())  # it is served, also on loopback
+        await come_in(page.wait_for("http://").strip())
         revoke(teachers, devices, "phone")
         assert page.process.wait(timeout=PATIENCE_S) == 2
         assert page.process.stderr is not None
