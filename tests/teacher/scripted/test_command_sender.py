@@ -7,7 +7,8 @@ from kurt2rt.core.rla.rla import SCRIPTED
 from kurt2rt.core.teaching.commands import Correct, HoldAction, Stop, Undo
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.scripted.command_sender import CommandSender
-from tests.teacher.stand_in_robot import StandInRobot
+from tests.teacher.client.test_client import wait_for_answers
+from tests.teacher.stand_in_robot import SlowMind, StandInRobot
 
 TICK = 40
 WRONG = Correct("s-7", SCRIPTED, "back", decision_tick=TICK)
@@ -37,6 +38,9 @@ async def test_send_undo_of_a_press_that_taught_nothing_is_not_sent(robot: Stand
     sender = CommandSender(client)
     teaches(robot, None)
     assert await sender.send(WRONG, TICK) == 1
+    robot.mind = SlowMind(Correct)
+    wait_for_answers(client, 0.1)
+    assert await sender.send(WRONG, TICK) == 0, "its answer is lost"
     await sender.send(UNDO, TICK)
     assert robot.all_of(Undo) == []
 
