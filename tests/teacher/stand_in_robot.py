@@ -23,6 +23,7 @@ from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.teaching.commands import Command, StreamCommand
 from kurt2rt.teacher import TeacherClient
 from tests.channel.states import ASKING, standing_in
+from tests.patience import PATIENCE_S
 from tests.teacher.page.fake_robot import A_HELLO
 from tests.teacher.states_of import state_where
 
@@ -32,8 +33,6 @@ Mind = Callable[[Any], Awaitable[Reply]]
 """Answer to a message."""
 _PICTURE_EACH_S = 0.05
 _TICKS = 5
-_LONGEST_S = 60.0
-"""Ends a test whose request never comes; none waits for it."""
 
 CRITICS = tuple(AppraisalName(name, value) for name, value in (("bad", -1), ("neutral", 0), ("good", 1)))
 MIDS: dict[str, Any] = {"behaviours": ("straight_on", "turn_left"), "mid": MidIntroduction("history", 12, 6.0)}
@@ -113,7 +112,7 @@ class StandInRobot:
 
     async def hears(self, kind: type[_Kind], count: int = 1, *, copies: bool = False) -> list[_Kind]:
         """Wait for `count` requests of a type; return all of it."""
-        with anyio.fail_after(_LONGEST_S):
+        with anyio.fail_after(PATIENCE_S):
             while len(self.all_of(kind, copies=copies)) < count:
                 await self._news.wait()
         return self.all_of(kind, copies=copies)

@@ -44,7 +44,7 @@ from kurt2rt.core.teaching.commands import (
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError, local_refusal
 from tests.channel.lossy_link import LossyLink, Weather
-from tests.patience import eventually
+from tests.patience import PATIENCE_S, eventually
 from tests.teacher.stand_in_robot import (
     SlowMind,
     StandInRobot,
@@ -64,8 +64,6 @@ def open_exchanges(client: TeacherClient) -> int:
 HELD = Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
 
 
-LONGEST_S = 60.0
-"""Ends a test whose event never comes, and the patience of a client that is answered; none waits for it."""
 _LONGEST_STEP_S = 0.05
 
 
@@ -107,7 +105,7 @@ def clock() -> Clock:
 
 @pytest.fixture
 async def client(pairing: Pairing, link: LossyLink, clock: Clock) -> AsyncIterator[TeacherClient]:
-    opened = TeacherClient(pairing.device.folder, port=link.port, patience_s=LONGEST_S, now=clock)
+    opened = TeacherClient(pairing.device.folder, port=link.port, patience_s=PATIENCE_S, now=clock)
     async with in_a_task_of_its_own(opened) as client:
         await state_where(client)
         yield client
@@ -119,7 +117,7 @@ async def more_pictures(client: TeacherClient, robot: StandInRobot) -> None:
     await state_where(client, lambda state: state.tick > told + 20)
 
 
-def wait_for_answers(client: TeacherClient, seconds: float = LONGEST_S) -> None:
+def wait_for_answers(client: TeacherClient, seconds: float = PATIENCE_S) -> None:
     """Let a client wait so long for its answers from now on; by default as long as a busy machine takes."""
     client._open.sender.patience_s = seconds
 

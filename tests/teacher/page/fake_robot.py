@@ -93,7 +93,6 @@ class FakeRobot(TeacherClient):
     newest_lessons: tuple[LessonLine, ...] = (A_LESSON,)
     link: LinkQuality = A_LINK
     _news: anyio.Event = field(default_factory=anyio.Event, init=False)
-    _heard: anyio.Event = field(default_factory=anyio.Event, init=False)
 
     def show(self, **changes: Any) -> State:
         """Send a new state, changed from the last one, two ticks later by default.
@@ -120,11 +119,6 @@ class FakeRobot(TeacherClient):
         """Return its calls of one name."""
         return [each for each in self.told if each[0] == name]
 
-    async def is_told(self, name: str) -> None:
-        """Wait for a call of this name."""
-        while not any(each[0] == name for each in self.told):
-            await self._heard.wait()
-
     async def states(self) -> AsyncIterator[State]:
         seen = None
         while True:
@@ -135,12 +129,12 @@ class FakeRobot(TeacherClient):
             yield seen
 
     def press(self, left_m_s: float, right_m_s: float) -> bool:
-        self._hear(("press", left_m_s, right_m_s))
+        self.told.append(("press", left_m_s, right_m_s))
         self.pressing = True
         return True
 
     def press_action(self, action: str) -> bool:
-        self._hear(("hold", action))
+        self.told.append(("hold", action))
         self.pressing = True
         return True
 
@@ -200,7 +194,7 @@ class FakeRobot(TeacherClient):
             raise RefusedError(answer.text)
 
     async def _answer(self, *told: Any) -> Answer:
-        self._hear(told)
+        self.told.append(told)
         await self._reach()
         if self.refuses:
             return Answer(False, "refused", self.refuses, 0)
@@ -210,8 +204,3 @@ class FakeRobot(TeacherClient):
         if self.silent:
             raise NoAnswerError("no answer: not known whether it counted; look at the lessons")
         await anyio.lowlevel.checkpoint()
-
-    def _hear(self, told: tuple[Any, ...]) -> None:
-        self.told.append(told)
-        self._heard.set()
-        self._heard = anyio.Event()

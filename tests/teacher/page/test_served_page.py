@@ -27,6 +27,7 @@ from kurt2rt.teacher.page.public_address import PageError, PublicAddress
 from kurt2rt.teacher.page.server import PagePort, listen
 from tests.channel.jumping_loop import run_jumping
 from tests.channel.missing_family import remove_family
+from tests.patience import eventually
 from tests.teacher.page.fake_robot import FakeRobot
 
 TOKEN = "abcdefghijklmnopqrstuvwxyz012345"
@@ -216,7 +217,7 @@ async def test_the_end_of_the_server_lets_go_of_the_robot_first() -> None:
         number = await see(page, socket)
         press = {"kind": "press", "press_id": 1, "left_m_s": 0.2, "right_m_s": 0.2, "picture": number}
         await socket.send(json.dumps(press))
-        await page.robot.is_told("press")
+        await eventually(lambda: page.robot.told_of("press"))
         page.end.set()
         await socket.wait_closed()
         assert page.robot.told[-1] == ("let_go",)

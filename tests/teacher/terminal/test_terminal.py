@@ -45,9 +45,10 @@ from kurt2rt.teacher.client.answer import NoAnswer, NoAnswerError
 from kurt2rt.teacher.terminal.terminal import TerminalTeacher
 from kurt2rt.teacher.terminal.terminal_text import format_critic_change, format_misunderstood, format_opinion
 from tests.channel.states import COMMANDS, SURPRISED, state
+from tests.patience import PATIENCE_S, eventually
 from tests.runs.explain.helpers import facts, level, story
 from tests.service.health.reports import ILL
-from tests.teacher.client.test_client import LONGEST_S, Clock, wait_for_answers
+from tests.teacher.client.test_client import Clock, wait_for_answers
 from tests.teacher.page.fake_robot import A_HELLO
 from tests.teacher.stand_in_robot import (
     CRITICS,
@@ -72,24 +73,14 @@ class Console:
     keyboard: int
     clock: Clock
     said: list[str] = field(default_factory=list)
-    _news: anyio.Event = field(default_factory=anyio.Event)
 
     def type(self, line: str) -> None:
         os.write(self.keyboard, f"{line}\n".encode())
 
-    def say(self, text: str) -> None:
-        self.said.append(text)
-        self._news.set()
-        self._news = anyio.Event()
-
     async def reads(self, text: str) -> str:
         """Wait until the screen shows a text; return its line."""
-        with anyio.fail_after(LONGEST_S):
-            while True:
-                for line in self.said:
-                    if text in line:
-                        return line
-                await self._news.wait()
+        await eventually(lambda: any(text in line for line in self.said))
+        return next(line for line in self.said if text in line)
 
     async def asks(self, line: str, answer: str) -> str:
         """Type a line and wait until the screen shows a text; return the line of the text."""
@@ -114,7 +105,7 @@ async def tells(request: Message) -> Reply:
 
 
 @asynccontextmanager
-async def console_at(pairing: Pairing, port: int, *, patience_s: float = LONGEST_S) -> AsyncIterator[Console]:
+async def console_at(pairing: Pairing, port: int, *, patience_s: float = PATIENCE_S) -> AsyncIterator[Console]:
     reading, writing = os.pipe()
     clock = Clock()
     other_readers = reading_threads()
@@ -125,7 +116,7 @@ async def console_at(pairing: Pairing, port: int, *, patience_s: float = LONGEST
                 anyio.create_task_group() as tasks,
             ):
                 console = Console(client, writing, clock)
-                tasks.start_soon(TerminalTeacher(client, lines, console.say, f"127.0.0.1:{port}").teach)
+                tasks.start_soon(TerminalTeacher(client, lines, console.said.append, f"127.0.0.1:{port}").teach)
                 yield console
                 console.type("quit")
                 tasks.cancel_scope.deadline = anyio.current_time() + 2.0
@@ -133,7 +124,7 @@ async def console_at(pairing: Pairing, port: int, *, patience_s: float = LONGEST
             os.close(writing)
             # The thread that reads the pipe sees its end; it must not find the file closed instead.
             for each in reading_threads() - other_readers:
-                each.join(LONGEST_S)
+                each.join(PATIENCE_S)
 
 
 def reading_threads() -> set[threading.Thread]:
@@ -237,7 +228,7 @@ async def test_invalid_line_does_not_end_teaching(console: Console, robot: Stand
 async def test_a_robot_that_is_not_there_ends_teaching(pairing: Pairing) -> None:
     with pytest.raises(BaseExceptionGroup) as ended:
         async with console_at(pairing, 9, patience_s=0.2):
-            await anyio.sleep(LONGEST_S)
+            await anyio.sleep(PATIENCE_S)
     error = ended.value
     while isinstance(error, BaseExceptionGroup):
         (error,) = error.exceptions
