@@ -39,7 +39,9 @@ async def in_a_thread(call: Callable[[], _Result]) -> _Result:
 async def test_teacher_in_a_running_loop_teaches(robot: RobotProcess) -> None:
     # As in a notebook: this test's loop runs, and each call blocks it.
     with Teacher(robot.device) as teacher:
-        assert "forward" in teacher.hello().actions
+        hello = teacher.hello()
+        assert hello.simulated
+        assert "forward" in hello.actions
         assert teacher.world() is not None
         assert teacher.send(Take).accepted
         teacher.send(Resume)
