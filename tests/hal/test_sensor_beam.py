@@ -36,7 +36,7 @@ def test_beam_dark_counts_are_below_those_of_a_pressed_sensor() -> None:
     assert INFRARED.floor_counts * 1.2 < dark < min(pressed)
 
 
-def test_a_sensor_that_reads_0_with_nothing_in_view_is_never_stuck() -> None:
+def test_a_sensor_whose_floor_is_0_is_never_stuck() -> None:
     blind = ROBOT.model_copy(update={"infrared": INFRARED.model_copy(update={"floor_counts": 0})})
     assert sensor_limits(ROBOT).stuck_ticks * ROBOT.cycle_s == pytest.approx(4.0)
     assert sensor_limits(blind).stuck_ticks * ROBOT.cycle_s > 1e9

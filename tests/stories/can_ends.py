@@ -74,7 +74,7 @@ class _NotebooksEnd(_End):
         queue, now_s = super().deliver, self._cable.now_s
 
         def deliver(each: Frame) -> None:
-            self._ends.on_heard(each.arbitration_id, now_s())
+            self._ends.on_heard(each.arbitration_id, each.data, now_s())
             queue(each, at_s if each is frame else max(at_s, now_s()), own=False)
 
         assert isinstance(frame, Frame)
@@ -87,7 +87,7 @@ class _NotebooksEnd(_End):
 
     def hear(self, frame: Frame) -> None:
         """Receive a frame of another node; no receiver can tell who sent it."""
-        self._ends.on_heard(frame.arbitration_id, self._cable.now_s())
+        self._ends.on_heard(frame.arbitration_id, frame.data, self._cable.now_s())
         super().deliver(frame, self._cable.now_s(), own=False)
 
     def tell_error(self, frame_id: int) -> None:

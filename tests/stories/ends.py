@@ -28,8 +28,8 @@ class Ends(ABC):
         """Callback with number and payload of each command that the driver sends."""
         self.on_arrived: Callable[[int, bytes, float], None] = lambda _number, _payload, _at_s: None
         """Callback with number, payload and time of arrival of each command that arrives at the robot."""
-        self.on_heard: Callable[[int, float], None] = lambda _id, _at_s: None
-        """Callback with identifier (0 without CAN) and time of the newest readings that arrived at the notebook."""
+        self.on_heard: Callable[[int, bytes, float], None] = lambda _id, _payload, _at_s: None
+        """Callback with identifier (0 without CAN), payload and time of each message of readings for the notebook."""
         self.bus: CanBus | None = None
         """Driver's interface to CAN; None without one."""
         self._injection, self._time, self._chance = injection, injection.time, chance

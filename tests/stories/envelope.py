@@ -14,6 +14,8 @@ _FRONT, _REAR = 0b000111, 0b111000
 _ROUNDING = 1e-6
 _MOST_UNDER_WAY = 2048
 """Frames in transit that are remembered; an older frame counts as lost."""
+_TOUCH_S = 0.1
+"""Time after a frame with a pressed bumper in which a set point must not push: a slow tick and the next one."""
 
 
 class _SentFrame(NamedTuple):
@@ -44,6 +46,8 @@ class Envelope:
         self._in_transit: dict[int, _SentFrame] = {}
         self._heard_at_s: dict[int, float] = {}
         """Time of the newest frame of each identifier that the robot sends."""
+        self._touched_at_s = {_FRONT: math.inf, _REAR: math.inf}
+        """Time of the first frame with a pressed bumper of each end since a set point that did not push there."""
         self._last_put: _SentFrame | None = None
         self._last_arrived: _SentFrame | None = None
         self._arrived_number, self._arrived_at_s = 0, -math.inf
@@ -51,11 +55,16 @@ class Envelope:
     def begin_program(self) -> None:
         """Expect a driver that knows nothing of what the one before it sent, and begins at rest."""
         self._last_put = _SentFrame(-math.inf, 0.0, BRAKE, bumper_pressed=False)
+        self._touched_at_s.update(dict.fromkeys(self._touched_at_s, math.inf))
 
-    def on_heard(self, frame_id: int, at_s: float) -> None:
+    def on_heard(self, frame_id: int, payload: bytes, at_s: float) -> None:
         """Note a frame that arrives at the notebook. `at_s`: simulated time in s."""
         if frame_id in self._wire.range_ids:
             self._heard_at_s[frame_id] = at_s
+        if frame_id == self._wire.bumpers_id and payload:
+            for end, since_s in self._touched_at_s.items():
+                if payload[0] & end:
+                    self._touched_at_s[end] = min(since_s, at_s)
 
     def on_sent(self, number: int, at_s: float, payload: bytes, age_s: float, *, latched: bool) -> None:
         """Check a frame that the driver hands to its bus; a violation is appended to `violations`.
@@ -76,6 +85,11 @@ class Envelope:
         fastest_m_s, slowest_m_s = max(told.left_m_s, told.right_m_s), min(told.left_m_s, told.right_m_s)
         if (self.bumpers & _FRONT and fastest_m_s > 0.0) or (self.bumpers & _REAR and slowest_m_s < 0.0):
             self._complain(at_s, f"pushes on towards the bumpers {self.bumpers:06b}")
+        for end, pushes in ((_FRONT, fastest_m_s > 0.0), (_REAR, slowest_m_s < 0.0)):
+            if not pushes:
+                self._touched_at_s[end] = math.inf
+            elif at_s - self._touched_at_s[end] > _TOUCH_S:
+                self._complain(at_s, f"pushed on since bumpers {end:06b} touched at {self._touched_at_s[end]:.3f} s")
         senses_age_s = at_s - min(self._heard_at_s.values(), default=-math.inf)
         if not told.standing and senses_age_s > self._limits.senses_age_s * self.clock_slowness + _ROUNDING:
             self._complain(at_s, f"moves though range sensors were silent for {senses_age_s * 1000:.0f} ms")

@@ -69,7 +69,7 @@ class LinkedEnds(Ends):
         def arrive(each: bytes) -> None:
             if self._has_ranges(each):
                 self._made_s = max(self._made_s, made_s)
-                self.on_heard(0, self._made_s)
+                self.on_heard(0, each, self._made_s)
             deliver(each)
 
         self._in.carry(payload, arrive, topic)

@@ -10,7 +10,7 @@ from tests.stories.drill import drilled
 from tests.stories.envelope import Envelope
 from tests.stories.rig import ROBOT
 from tests.stories.table import TABLE, Kind, Target
-from tests.stories.wire import decode_control
+from tests.stories.wire import KURT2, decode_control
 
 RANGE_FRAME = 5
 BRAKE = bytes(encode_brake().data)
@@ -43,7 +43,7 @@ class Drive:
         self.envelope.bumpers = bumpers
         self.number += 1
         self.now_s += after_s
-        self.envelope.on_heard(RANGE_FRAME, self.now_s - heard_s)
+        self.envelope.on_heard(RANGE_FRAME, b"", self.now_s - heard_s)
         self.envelope.on_sent(self.number, self.now_s, payload, age_s, latched=latched)
         if late_s is not None:
             self.envelope.on_arrived(self.number, self.now_s + late_s, payload)
@@ -110,6 +110,16 @@ def test_a_frame_that_arrives_twice_is_a_complaint() -> None:
     drive = Drive().on_sent(set_point(0))
     drive.envelope.on_arrived(1, drive.now_s, set_point(0))
     assert "arrives twice" in drive.violations[0]
+
+
+@pytest.mark.parametrize("answers", [True, False])
+def test_a_touch_that_the_driver_does_not_read_is_a_complaint(answers: bool) -> None:
+    drive = Drive().to(2)
+    drive.envelope.on_heard(KURT2.bumpers_id or 0, bytes((0b000100, 0)), drive.now_s)
+    drive.on_sent(set_point(0 if answers else 2))
+    for _ in range(10):
+        drive.on_sent(set_point(2))
+    assert any("pushed on since bumpers 000111" in each for each in drive.violations) is not answers
 
 
 def test_envelope_pressed_bumper_allows_reversal_but_no_jump() -> None:

@@ -114,7 +114,7 @@ async def test_an_error_in_the_loop_ends_the_program_and_says_where(rig: Rig, pr
 def test_standstills_cover_stop_and_silence(rig: Rig, witness: Witness) -> None:
     witness.begin_program(rig.start_driver())
     witness.watch()
-    witness.envelope.on_heard(5, 0.0)
+    witness.envelope.on_heard(5, b"", 0.0)
     go, stand = bytes((0, 2, 0, 1, 0, 1, 0, 1)), bytes((0, 2, 0, 0, 0, 0, 0, 1))
     for at_s, payload in ((0.1, go), (0.2, go), (0.3, stand), (0.4, go), (0.9, go), (1.0, b"\xff" * 8), (1.05, go)):
         rig.time.run_until(at_s)

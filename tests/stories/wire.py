@@ -42,6 +42,8 @@ class Wire(NamedTuple):
     """Return the command of a payload; None if the robot or this guard does not use it."""
     range_ids: frozenset[int]
     """Identifiers of the messages that hold the range sensors."""
+    bumpers_id: int | None = None
+    """Identifier of the message whose first byte has the bits of the bumpers; None without bumpers."""
 
 
 def decode_control(payload: bytes) -> WheelCommand | None:
@@ -82,6 +84,6 @@ def decode_twist(payload: bytes) -> WheelCommand | None:
     return WheelCommand(forward_m_s - half_m_s, forward_m_s + half_m_s, forward_m_s == turn_rad_s == 0.0)
 
 
-KURT2 = Wire("kurt2", decode_control, frozenset((5, 6, 7, 21, 22)))  # 18 range sensors (docs/the-robot.md#messages)
+KURT2 = Wire("kurt2", decode_control, frozenset((5, 6, 7, 21, 22)), 10)  # docs/the-robot.md#messages
 SCHOOL = Wire("school", decode_line, frozenset((0,)))
 TURTLEBOT = Wire("turtlebot", decode_twist, frozenset((0,)))
