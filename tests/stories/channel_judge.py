@@ -34,13 +34,17 @@ class ChannelJudge:
         self._commands: set[bytes] = set()
         self.presses: dict[str, tuple[int, int]] = {}
         """Newest press of each device, and the ticks that had run at its newest message."""
+        self._drove = set[tuple[str, int]]()
+        """Devices and presses that drove; one that waits for a resume has not."""
         self._seen = _NEVER
 
-    def on_tick(self, tick: int) -> None:
-        """Count a tick that ran; what it missed before counts for no limit."""
+    def on_tick(self, tick: int, *, by_hand: bool) -> None:
+        """Count a tick that ran, `by_hand` if a teacher drove; what it missed before counts for no limit."""
         self._ran += 1
         self._ran_at[tick] = self._ran
         self._ran_at.pop(tick - _REMEMBERED_TICKS, None)
+        if by_hand:
+            self._drove |= {(device, press) for device, (press, _) in self.presses.items()}
 
     @property
     def picture_ticks(self) -> int:
@@ -71,7 +75,8 @@ class ChannelJudge:
             self._seen = max(self._seen, self._ran_at.get(seen, 0))
             if isinstance(request.command, Drive | HoldAction):
                 press, ran = self.presses.get(sender.device, (0, 0))
-                if press == request.command.press_id and self._ran - ran > _PRESS_TICKS:
+                drove = press == request.command.press_id and (sender.device, press) in self._drove
+                if drove and self._ran - ran > _PRESS_TICKS:
                     yield "taken though its press is over"
                 self.presses[sender.device] = request.command.press_id, self._ran
         if request.boot != self._boot:

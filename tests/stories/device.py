@@ -10,8 +10,10 @@ from kurt2rt.channel.protocol.codec import decode_request, encode_request
 from kurt2rt.channel.protocol.requests import Request, StopRequest, StreamRequest, TickRequest, tick_request
 from kurt2rt.channel.server.reply import Reply, ReplyStatus
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.message_fields import WireError
 from kurt2rt.core.teaching.commands import Command, Stream
+from kurt2rt.core.tick_record import TickRecord
 from tests.stories.channel_judge import ChannelJudge
 from tests.stories.fault import FaultInjection
 from tests.stories.poor_link import PoorLink
@@ -81,10 +83,10 @@ class Device:
         """Return whether the robot works on an answer."""
         return bool(self._tasks)
 
-    def see(self, tick: int) -> None:
+    def see(self, record: TickRecord) -> None:
         """Let the teacher see the state of this tick."""
-        self._tick = tick
-        self.judge.on_tick(tick)
+        self._tick = record.tick
+        self.judge.on_tick(record.tick, by_hand=record.decision.cause is DecisionCause.TEACHER)
 
     def send(self, command: Command) -> None:
         """Send a message of a stream once, a command until it is answered."""

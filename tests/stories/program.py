@@ -211,7 +211,7 @@ class Program:
                 self._recorder.write_waiting()
             if ticks % _POLL_EVERY_TICKS == 0:
                 self._recorder.poll()
-        self._device.see(record.tick)
+        self._device.see(record)
         if self.knowledge.journal.dies == "killed":
             raise KilledError
 

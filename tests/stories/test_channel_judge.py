@@ -23,14 +23,14 @@ def command(kind: type[Resume | Teach], seen: int, boot: bytes = BOOT) -> Reques
     return tick_request(kind, boot, b"12345678", seen, **own)
 
 
-def judged(*taken: tuple[int, Request, Reply], ticks: int = 0) -> list[str]:
+def judged(*taken: tuple[int, Request, Reply], ticks: int = 0, by_hand: bool = False) -> list[str]:
     """Return the complaints about these messages of one device, with their numbers, some ticks after each other."""
     judge = ChannelJudge()
     judge.begin_program(BOOT)
     for number, request, reply in taken:
         judge.on_reply(Sender("eve", b"", number), request, TICK, reply)
         for tick in range(TICK, TICK + ticks):
-            judge.on_tick(tick)
+            judge.on_tick(tick, by_hand=by_hand)
     return judge.problems
 
 
@@ -66,10 +66,10 @@ def test_it_complains_of_what_must_not_be_taken(taken: list[tuple[int, Request, 
     assert complaint in said
 
 
-@pytest.mark.parametrize(("ticks", "complaints"), [(30, 0), (31, 1)])
-def test_a_press_is_over_after_a_silence(ticks: int, complaints: int) -> None:
+@pytest.mark.parametrize(("ticks", "by_hand", "complaints"), [(30, True, 0), (31, True, 1), (31, False, 0)])
+def test_a_press_that_drove_is_over_after_a_silence(ticks: int, by_hand: bool, complaints: int) -> None:
     drive = StreamRequest(BOOT, Drive("", TICK, 7, 0.1, 0.1))
-    said = judged((1, drive, TAKEN), (2, drive, TAKEN), ticks=ticks)
+    said = judged((1, drive, TAKEN), (2, drive, TAKEN), ticks=ticks, by_hand=by_hand)
     assert len([each for each in said if "its press is over" in each]) == complaints
 
 
@@ -77,6 +77,6 @@ def test_it_counts_ticks_since_the_newest_picture_that_was_taken() -> None:
     judge = ChannelJudge()
     judge.begin_program(BOOT)
     for tick in (1, 2, 30):
-        judge.on_tick(tick)
+        judge.on_tick(tick, by_hand=False)
     judge.on_reply(Sender("eve", b"", 1), watch(2), 30, TAKEN)
     assert judge.picture_ticks == 1
