@@ -34,6 +34,10 @@ class Hand(Device):
             self._presses = True
             self._beat()
 
+    def press_again(self) -> None:
+        """Let go and press again, if the finger is down."""
+        self._press_id += self._presses
+
     def let_go(self) -> None:
         """Send no more messages."""
         self._presses = False

@@ -12,6 +12,7 @@ from kurt2rt.core.teaching.commands import (
     BeginSession,
     Command,
     Correct,
+    HoldAction,
     Resume,
     Reward,
     SetPhase,
@@ -36,6 +37,8 @@ _REGRETS = 0.2
 """Share of resumes after which he says stop at once, which may overtake the resume on the way."""
 _TAKES_EVERY_S, _STOPS_ANOTHER_EVERY_S = 2.0, 3.0
 """Times in which he takes the robot back from another teacher, and tells it to stop."""
+_PRESSES_AGAIN_EVERY_S = 0.5
+"""Time in which the other one lets go and presses again."""
 _WATCHES_EVERY_S = 0.1
 _HOLDS_S = 1.0
 
@@ -79,6 +82,8 @@ class StoryTeacher:
     def _commands(self, record: TickRecord) -> list[Command]:
         chance = self._chance
         if self._program.runtime.handler.authority.teacher not in (None, TEACHER):
+            if self._happens(_PRESSES_AGAIN_EVERY_S):
+                self._program.hand.press_again()
             if self._happens(_STOPS_ANOTHER_EVERY_S):
                 return [Stop("", TEACHER)]
             return [Take("", TEACHER)] if self._is_due(record.tick, _TAKES_EVERY_S) else []
@@ -86,9 +91,9 @@ class StoryTeacher:
             return [BeginSession("", TEACHER, self._program.next_id()), SetPhase("", TEACHER, self._phase)]
         if record.guard_result.latched or record.decision.cause is DecisionCause.STOPPED:
             self._stopped_ticks += 1
-            is_due = self._is_due(self._stopped_ticks, _RESUMES_EVERY_S)
-            if not is_due:
-                return []
+            if not self._is_due(self._stopped_ticks, _RESUMES_EVERY_S):
+                held = self._scripted.update(view_of_tick(record))
+                return [held] if isinstance(held, HoldAction) else []
             regrets = not self.is_calm and chance.random() < _REGRETS
             return [Resume("", TEACHER, record.tick), *([Stop("", TEACHER)] if regrets else [])]
         self._stopped_ticks = 0

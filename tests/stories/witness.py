@@ -7,7 +7,7 @@ from typing import NamedTuple
 from hal.robot import STANDSTILL, Robot, SensorReadings
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
-from kurt2rt.core.teaching.commands import Drive, Resume, Stop
+from kurt2rt.core.teaching.commands import Drive, Resume, Stop, Take
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.faulty_sensor import RobotProxy
 from kurt2rt.platform.tick_timer import TickTimer
@@ -54,8 +54,10 @@ class Witness(RobotProxy):
         self._must_stand = ""
         self._stops = set[str]()
         """Ids of the stops of teachers since the last resume."""
-        self._stop_tick, self._newest_press, self._ended_press = -1, -1, -2
+        self._stop_tick = self._newest_press = self._ended_press = -1
         """Tick of the newest stop of a teacher, and ids of hands' presses: the newest, and the newest one before it."""
+        self._stopped_by, self._driver = set[str](), ""
+        """Teachers who said stop since the last resume and since the last one took the robot, and whose hand drives."""
         self.digest = hashlib.sha256()
         """Of all frames that were sent, and of their times."""
         self._moved_at_s = 0.0
@@ -68,7 +70,8 @@ class Witness(RobotProxy):
         self._robot = robot
         self._must_stand = "the program was started"
         self._stops.clear()
-        self._stop_tick, self._newest_press, self._ended_press = -1, -1, -2
+        self._stopped_by.clear()
+        self._stop_tick = self._newest_press = self._ended_press = -1
         self.envelope.begin_program()
 
     def watch(self) -> None:
@@ -101,6 +104,7 @@ class Witness(RobotProxy):
         self._note_commands(record)
         # A teacher's hand tells it to drive, until it lets go.
         by_hand = cause is DecisionCause.TEACHER and self._newest_press > self._ended_press
+        by_hand = by_hand and self._stopped_by <= {self._driver}
         if moves and self._must_stand and not by_hand:
             self._complain(f"drives though {self._must_stand}, without a resume")
         if record.guard_result.latched:
@@ -165,16 +169,20 @@ class Witness(RobotProxy):
                 case Resume(seen_tick=seen) if each.command_id in resumed:
                     self._must_stand = ""
                     self._stops.clear()
+                    self._stopped_by.clear()
                     if seen is not None and seen < self._stop_tick:
                         self._complain("a stop is lifted by a teacher who had not seen it")
                 case Stop(press_id=None):
                     self._must_stand = f"{each.teacher} said stop"
+                    self._stopped_by.add(each.teacher)
                     self._ended_press = self._newest_press
                     if each.command_id not in self._stops:  # a copy is not a newer one
                         self._stops.add(each.command_id)
                         self._stop_tick = record.tick
+                case Take():
+                    self._stopped_by &= {each.teacher}
                 case Drive(press_id=press_id):
-                    self._newest_press = max(self._newest_press, press_id)
+                    self._newest_press, self._driver = max(self._newest_press, press_id), each.teacher
 
     def _note_latch(self, now_s: float, reason: str) -> None:
         self._must_stand = reason
