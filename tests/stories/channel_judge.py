@@ -32,9 +32,9 @@ class ChannelJudge:
         self._ran, self._ran_at = 0, dict[int, int]()
         self._numbers: dict[str, int] = {}
         self._commands: set[bytes] = set()
-        self.presses: dict[str, tuple[int, int]] = {}
+        self._presses: dict[str, tuple[int, int]] = {}
         """Newest press of each device, and the ticks that had run at its newest message."""
-        self._drove = set[tuple[str, int]]()
+        self.drove = set[tuple[str, int]]()
         """Devices and presses that drove; one that waits for a resume has not."""
         self._seen = _NEVER
 
@@ -44,7 +44,9 @@ class ChannelJudge:
         self._ran_at[tick] = self._ran
         self._ran_at.pop(tick - _REMEMBERED_TICKS, None)
         if by_hand:
-            self._drove |= {(device, press) for device, (press, _) in self.presses.items()}
+            self.drove |= {(device, press) for device, (press, _) in self._presses.items()}
+            if all(self._ran - ran > _PRESS_TICKS for _, ran in self._presses.values()):
+                self.problems.append(f"in tick {tick} it is driven by a hand that is silent")
 
     @property
     def picture_ticks(self) -> int:
@@ -74,11 +76,11 @@ class ChannelJudge:
             self._note_number(sender)
             self._seen = max(self._seen, self._ran_at.get(seen, 0))
             if isinstance(request.command, Drive | HoldAction):
-                press, ran = self.presses.get(sender.device, (0, 0))
-                drove = press == request.command.press_id and (sender.device, press) in self._drove
+                press, ran = self._presses.get(sender.device, (0, 0))
+                drove = press == request.command.press_id and (sender.device, press) in self.drove
                 if drove and self._ran - ran > _PRESS_TICKS:
                     yield "taken though its press is over"
-                self.presses[sender.device] = request.command.press_id, self._ran
+                self._presses[sender.device] = request.command.press_id, self._ran
         if request.boot != self._boot:
             yield "taken though it was meant for another start of the program"
         if tick - seen > longest:
