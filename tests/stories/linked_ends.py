@@ -179,7 +179,7 @@ class SerialEnds(LinkedEnds):
         return _line(b" ".join(wire.words_of(message)[:6] + readings))
 
     def _has_ranges(self, message: bytes) -> bool:
-        return wire.words_of(message)[:1] == [b"sense"]
+        return any(wire.words_of(line)[:1] == [b"sense"] for line in message.split(b"\n"))  # garbage may follow it
 
 
 def _line(body: bytes) -> bytes:
