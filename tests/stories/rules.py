@@ -105,7 +105,8 @@ class Rules:
         if within_s is None or fault.target in ("disk", "teacher_link"):
             return
         if row.latches == GuardReason.WHEELS_DISOBEY:
-            within_s *= _MANOEUVRE  # until it is told to change its speed
+            # Until it is told to change its speed, and while a loose contact holds.
+            within_s = within_s * _MANOEUVRE + (row.period_s if fault.kind == "intermittent" else 0.0)
         from_s, until_s = fault.begin_s - _DROVE_S, fault.begin_s + within_s
         alone = all(each is fault or each.end_s < from_s or each.begin_s > until_s for each in self.begun)
         if not alone or self._started_s > from_s or fault.end_s < until_s or not fault.acts(fault.begin_s):
