@@ -164,10 +164,13 @@ class _Drill:
     def _end(self) -> Iterator[str]:
         ends_by, drove_at_s = self._must.ends_by, self._witness.drove_at_s
         by_itself = any(self._fault.end_s < at_s <= self._resume_at_s for at_s in drove_at_s)
-        if by_itself is not (ends_by == "itself"):
-            did = "drove by itself" if by_itself else "stood"
-            yield f"must wait for {ends_by} when the fault is over, {did}"
-        if ends_by != "itself" and not any(at_s > self._resume_at_s for at_s in drove_at_s):
+        if ends_by == "itself":
+            if not by_itself:
+                yield "must drive by itself when the fault is over, did not"
+            return
+        if by_itself:
+            yield f"must wait for {ends_by} when the fault is over, drove by itself"
+        if not any(at_s > self._resume_at_s for at_s in drove_at_s):
             yield f"must drive after {ends_by}, did not"
 
 

@@ -42,7 +42,7 @@ async def test_fault_cases_lead_to_their_rows_for_other_seeds(target: Target, ki
         ("tick", "stuck", {"because": "bus lost"}, "must stand because of ('bus lost',), stood because of"),
         ("tick", "stuck", {"latches": "bus lost"}, "must stay stopped because of bus lost, it was ticks ceased"),
         ("tick", "stuck", {"latches_within_s": 0.05}, "must be stopped for good within 0.05 s, took 0.1"),
-        ("tick", "stuck", {"ends_by": "itself"}, "must wait for itself when the fault is over, stood"),
+        ("tick", "stuck", {"ends_by": "itself"}, "must drive by itself when the fault is over, did not"),
         ("tick", "stuck", {"ends_by": "press"}, "must drive after press, did not"),
         ("tick", "stuck", {"leads_to": "stutters"}, "must go on in between"),
         ("tick", "stuck", {"leads_to": "drives_on"}, "must drive on, stood for 1"),
